@@ -1,0 +1,174 @@
+"""From a crease pattern to its piecewise DOG."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+from shapely import Polygon
+
+from ..arrays import FloatArray, IntArray
+from ..errors import NetError, PatternError
+from ..pattern.arrangement import Arrangement, arrange, sheet_polygon
+from ..pattern.crease_pattern import CreasePattern
+from ..pattern.curves import sample_crease
+from .crease_points import find_crease_points
+from .frame import NetFrame, border_direction
+from .grid import OrthogonalGrid, place_grid
+from .net_points import NodeCopies, node_copies
+from .overlay import Overlay, overlay
+from .piecewise_dog import PiecewiseDog, Stitches
+from .render_map import build_render_map
+from .topology import Topology, build_topology
+
+#: Quads along the longer side that a net may have.
+MIN_RESOLUTION, MAX_RESOLUTION = 4, 1000
+#: Samples of a crease are at most this far apart before noding, cell lengths.
+_SAMPLE_SPACING = 0.08
+#: A sheet narrower than this many cells cannot bend in its width.
+_MIN_CELLS_ACROSS = 1.0
+#: A net of more vertices than this is refused before memory is gone.
+MAX_VERTICES = 400_000
+#: A net larger than this is refused before anything is built: cells of the whole grid.
+_MAX_POINTS = 200_000
+
+
+def build_net(pattern: CreasePattern, resolution: int = 32) -> PiecewiseDog:
+    """The piecewise DOG of a crease pattern with ``resolution`` quads along the sheet's longer side.
+
+    Raises PatternError for a drawing without anything to fold or with a border that crosses itself, and
+    NetError when the resolution is out of range or the sheet is too thin for it.
+    """
+    if not isinstance(resolution, int | np.integer) or not MIN_RESOLUTION <= resolution <= MAX_RESOLUTION:
+        raise NetError(f"the resolution must be a whole number from {MIN_RESOLUTION} to {MAX_RESOLUTION}")
+    if not pattern.creases:
+        raise PatternError("there is no crease, so there is nothing to fold", element="creases")
+    total = len(pattern.boundary) + sum(len(c.points) for c in pattern.creases)
+    if total > _MAX_POINTS:
+        raise PatternError(f"the drawing has {total} points, more than {_MAX_POINTS}; simplify its curves")
+    sheet_polygon(pattern.boundary, pattern.holes)  # in drawing units, so that errors name the user's place
+    frame = _frame(pattern, int(resolution))
+    arrangement = _arrange(pattern, frame)
+    grid = place_grid(arrangement)
+    over = overlay(arrangement, grid)
+    topology = build_topology(over, grid)
+    if len(topology.vertex_grid) > MAX_VERTICES:
+        raise NetError(f"the net has more than {MAX_VERTICES} vertices; use a lower resolution")
+    return _assemble(pattern, frame, arrangement, grid, over, topology)
+
+
+def _frame(pattern: CreasePattern, resolution: int) -> NetFrame:
+    angle = border_direction(pattern.boundary)
+    turned = NetFrame((0.0, 0.0), angle, 1.0).to_net(pattern.boundary - pattern.boundary[0])
+    low, high = turned.min(axis=0), turned.max(axis=0)
+    width, height = high - low
+    unit = float(max(width, height)) / resolution
+    if min(width, height) < _MIN_CELLS_ACROSS * unit:
+        needed = int(np.ceil(_MIN_CELLS_ACROSS * max(width, height) / min(width, height)))
+        raise NetError(
+            f"the sheet is only {min(width, height):.4g} across, less than a cell of {unit:.4g}: "
+            f"at least {needed} quads are needed along its longer side",
+            element="border",
+        )
+    corner = NetFrame((0.0, 0.0), angle, 1.0).to_drawing(low[None])[0] + pattern.boundary[0]
+    return NetFrame((float(corner[0]), float(corner[1])), angle, unit)
+
+
+def _arrange(pattern: CreasePattern, frame: NetFrame) -> Arrangement:
+    sheet = sheet_polygon(frame.to_net(pattern.boundary), tuple(frame.to_net(h) for h in pattern.holes))
+    spacing = _SAMPLE_SPACING * frame.unit
+    lines = [frame.to_net(sample_crease(crease, spacing)) for crease in pattern.creases]
+    labels = [pattern.crease_label(k) for k in range(len(pattern.creases))]
+    return arrange(sheet, lines, labels, frame.to_drawing)
+
+
+def _assemble(
+    pattern: CreasePattern,
+    frame: NetFrame,
+    arrangement: Arrangement,
+    grid: OrthogonalGrid,
+    over: Overlay,
+    topology: Topology,
+) -> PiecewiseDog:
+    copies = node_copies(over, topology, grid)
+    chain_crease = np.array([chain.crease for chain in arrangement.chains], dtype=np.int64)
+    flat = np.column_stack([grid.xs[topology.vertex_grid[:, 0]], grid.ys[topology.vertex_grid[:, 1]]])
+    rest = frame.to_drawing(flat)
+    surface = build_render_map(over, copies, chain_crease, frame.to_drawing(over.points), len(flat))
+    points = find_crease_points(arrangement, over, topology, grid)
+    polygons = _patch_polygons(arrangement, over, frame)
+    notes = list(arrangement.notes) + list(grid.notes)
+    for chain in over.lost_chains:
+        label = pattern.crease_label(int(chain_crease[chain]))
+        notes.append(f"a piece of {label} is smaller than a cell and was left out; use a finer resolution")
+    if len(points.position) == 0:
+        raise NetError("no crease crosses the grid: use a finer resolution", element="creases")
+    # Mean grid edge 1, whatever the asked cell was: the weights of the terms are meant for that scale.
+    lengths = np.hypot(*(flat[topology.edges[:, 1]] - flat[topology.edges[:, 0]]).T)
+    mean = float(lengths.mean())
+    return _in_net_units(
+        PiecewiseDog(
+            rest, flat, frame, topology.quads, topology.quad_patch, topology.vertex_patch, topology.edges,
+            lengths, topology.stars, topology.links, topology.neighbours,
+            _stitches(over, copies, arrangement), points, surface, polygons, chain_crease,
+            tuple(pattern.crease_label(k) for k in range(len(pattern.creases))), tuple(notes),
+            grid, topology, arrangement.sheet, over,
+        ),
+        mean,
+    )  # fmt: skip
+
+
+def _in_net_units(net: PiecewiseDog, mean: float) -> PiecewiseDog:
+    """The same net with lengths divided by ``mean`` (cell lengths in, net units out)."""
+    from dataclasses import replace
+
+    points = net.crease_points
+    return replace(
+        net,
+        flat=_frozen(net.flat / mean),
+        rest=_frozen(net.rest),
+        frame=net.frame.scaled(mean),
+        edge_length=_frozen(net.edge_length / mean),
+        stitches=replace(net.stitches, position=net.stitches.position / mean),
+        crease_points=replace(points, position=points.position / mean, along=points.along / mean),
+        grid=OrthogonalGrid(net.grid.xs / mean, net.grid.ys / mean, net.grid.notes),
+        sheet=shapely.transform(net.sheet, lambda p: p / mean),
+        overlay=replace(net.overlay, points=net.overlay.points / mean),
+    )
+
+
+def _frozen(array: FloatArray) -> FloatArray:
+    array.setflags(write=False)
+    return array
+
+
+def _stitches(over: Overlay, copies: NodeCopies, arrangement: Arrangement) -> Stitches:
+    """Every node on a grid line, and every crease vertex, that has more than one copy."""
+    count = np.diff(copies.start)
+    wanted = (over.line_x >= 0) | (over.line_y >= 0)
+    if len(arrangement.vertices):
+        tree = shapely.STRtree(shapely.points(over.points))
+        near = tree.query(shapely.points(arrangement.vertices), predicate="dwithin", distance=2e-7)
+        wanted[near[1]] = True
+    nodes = np.flatnonzero(wanted & (count > 1))
+    first = np.repeat(copies.start[nodes], count[nodes] - 1)
+    second: IntArray = np.concatenate(
+        [np.arange(copies.start[n] + 1, copies.start[n + 1]) for n in nodes] or [np.zeros(0, dtype=np.int64)]
+    )
+    return Stitches(
+        np.hstack([copies.vertices[first], copies.vertices[second]]),
+        np.hstack([copies.weights[first], -copies.weights[second]]),
+        over.points[copies.node[first]],
+    )
+
+
+def _patch_polygons(arrangement: Arrangement, over: Overlay, frame: NetFrame) -> tuple[Polygon, ...]:
+    """One polygon a patch, drawing units: the union of its faces (a free crease end leaves no trace)."""
+    loops = np.split(over.loop_nodes, over.loop_start[1:-1])
+    polygons = np.array([Polygon(over.points[loop]) for loop in loops])
+    result = []
+    for patch in range(int(over.patch.max()) + 1):
+        union = shapely.coverage_union_all(polygons[over.patch == patch])
+        if union.geom_type != "Polygon":
+            union = shapely.union_all(polygons[over.patch == patch], grid_size=1e-7)
+        result.append(shapely.transform(union, frame.to_drawing))
+    return tuple(result)

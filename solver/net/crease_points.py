@@ -1,0 +1,300 @@
+"""Crease points: where a crease crosses a grid edge, with what the terms and the measures need of each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from shapely import LineString
+
+from ..arrays import BoolArray, FloatArray, IntArray, frozen_array
+from ..pattern.arrangement import Arrangement
+from .grid import OrthogonalGrid
+from .net_points import weights_at
+from .overlay import Overlay
+from .topology import Topology
+
+#: Neighbours for tangent and osculating plane lie at least this far along the crease, cell lengths: nearer
+#: ones measure the sag of the grid's chords instead of the crease.
+NEIGHBOUR_SPACING = 0.5
+#: At the last point before a crease's end a nearer neighbour will do, cell lengths.
+NEIGHBOUR_SPACING_AT_END = 0.25
+#: Crease points that carry no fold condition (paper, section 6.1, Fig. 12).
+MIN_CURVATURE = 1e-5
+MIN_EDGE_PART = 0.05
+MIN_EDGE_ANGLE = np.radians(3.0)
+#: The flat tangent is a central difference over this distance to each side, cell lengths.
+_TANGENT_STEP = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class CreasePoints:
+    """K crease points, chain by chain in the creases' direction.
+
+    position (K,2) net units; chain, crease (K,); along (K,) distance from the chain's start; end (K,) at a
+    crease vertex; tangent (K,2) flat unit tangent
+    left_vertices, right_vertices (K,4), left_weights, right_weights (K,4): the point in the two patches
+    left_edge, right_edge (K,2): directed grid edges, equal when flat, one on each side; -1 where none
+    cos2 (K,) squared cosine of the flat angle between that edge and the tangent (alpha of Lemma 5.1)
+    carrier (F,) points with a fold condition; fold_vertices (F,8): a1, b1, a2, b2 (the grid edge in the left
+    and right patch), two of the point before, two of the point after; fold_weights (F,3): position of the
+    point, of the point before, and after, each along its pair; fold_neighbours (F,2) the crease points
+    before and after
+    """
+
+    position: FloatArray
+    chain: IntArray
+    crease: IntArray
+    along: FloatArray
+    end: BoolArray
+    tangent: FloatArray
+    left_vertices: IntArray
+    left_weights: FloatArray
+    right_vertices: IntArray
+    right_weights: FloatArray
+    left_edge: IntArray
+    right_edge: IntArray
+    cos2: FloatArray
+    carrier: IntArray
+    fold_vertices: IntArray
+    fold_weights: FloatArray
+    fold_neighbours: IntArray
+
+
+@dataclass
+class _Row:
+    """One crease point while it is being gathered."""
+
+    node: int
+    along: float
+    end: bool
+    left: tuple[IntArray, FloatArray] | None
+    right: tuple[IntArray, FloatArray] | None
+
+
+def find_crease_points(
+    arrangement: Arrangement, over: Overlay, topology: Topology, grid: OrthogonalGrid
+) -> CreasePoints:
+    """Walk every chain of the arrangement through the overlay. All in cell lengths."""
+    builder = _Builder(over, topology, grid)
+    for index, chain in enumerate(arrangement.chains):
+        rows, length = _walk(over, topology, grid, index, chain.points, chain.closed)
+        builder.add_chain(index, chain.crease, chain.points, chain.closed, rows, length)
+    return builder.finish()
+
+
+def _walk(
+    over: Overlay,
+    topology: Topology,
+    grid: OrthogonalGrid,
+    index: int,
+    points: FloatArray,
+    closed: bool,
+) -> tuple[list[_Row], float]:
+    mine = np.flatnonzero(over.chain == index)
+    if len(mine) == 0:
+        return [], 0.0
+    line = LineString(points)
+    length = line.length
+    a, b = over.segments[mine].T
+    nodes = np.unique(over.segments[mine])
+    along = dict(zip(nodes.tolist(), shapely.line_locate_point(line, shapely.points(over.points[nodes])),
+                     strict=True))  # fmt: skip
+    after: dict[int, tuple[int, int]] = {}
+    before: dict[int, tuple[int, int]] = {}
+    for p, q, left, right in zip(a.tolist(), b.tolist(), over.left[mine].tolist(),
+                                 over.right[mine].tolist(), strict=True):  # fmt: skip
+        forward = along[q] > along[p]
+        if closed and abs(along[q] - along[p]) > 0.5 * length:
+            forward = not forward
+        if not forward:
+            p, q, left, right = q, p, right, left
+        after[p] = before[q] = (left, right)
+    rows = []
+    for node in sorted(nodes.tolist(), key=lambda n: along[n]):
+        on_grid = over.line_x[node] >= 0 or over.line_y[node] >= 0
+        sides = after.get(node) or before.get(node)
+        end = not closed and (node not in after or node not in before)
+        if sides is None or not (on_grid or end):
+            continue
+        copies = [_copy(over, topology, grid, node, face) for face in sides]
+        rows.append(_Row(node, float(along[node]), end, copies[0], copies[1]))
+    return rows, length
+
+
+def _copy(
+    over: Overlay, topology: Topology, grid: OrthogonalGrid, node: int, face: int
+) -> tuple[IntArray, FloatArray] | None:
+    """The node as seen through a face: the vertices of its quad, counting ones first, and their weights."""
+    if face < 0 or topology.face_quad[face] < 0:
+        return None
+    weights = weights_at(over, grid, np.array([node]), over.cell[face][None])[0]
+    vertices = topology.quads[topology.face_quad[face]]
+    order = np.argsort(np.abs(weights) == 0, kind="stable")
+    return vertices[order], weights[order]
+
+
+class _Builder:
+    """Collects crease points chain by chain into the arrays of CreasePoints."""
+
+    def __init__(self, over: Overlay, topology: Topology, grid: OrthogonalGrid) -> None:
+        self.over, self.topology = over, topology
+        self.flat = np.column_stack([grid.xs[topology.vertex_grid[:, 0]], grid.ys[topology.vertex_grid[:, 1]]])
+        self.rows: list[tuple[object, ...]] = []
+        self.carrier: list[int] = []
+        self.fold: list[tuple[list[int], list[float], list[int]]] = []
+
+    def add_chain(
+        self, chain: int, crease: int, points: FloatArray, closed: bool, rows: list[_Row], length: float
+    ) -> None:
+        if not rows:
+            return
+        tangents = _tangents(points, np.array([row.along for row in rows]), length, closed)
+        base = len(self.rows)
+        for row, tangent in zip(rows, tangents, strict=True):
+            left_edge, right_edge, cos2 = self._edges(row, tangent)
+            blank = (np.full(4, -1, dtype=np.int64), np.zeros(4))
+            left, right = row.left or blank, row.right or blank
+            self.rows.append((self.over.points[row.node], chain, crease, row.along, row.end, tangent,
+                              *left, *right, left_edge, right_edge, cos2))  # fmt: skip
+        for k in range(len(rows)):
+            stencil = self._fold_stencil(rows, k, closed, length)
+            if stencil is not None:
+                vertices, weights, neighbours = stencil
+                self.carrier.append(base + k)
+                self.fold.append((vertices, weights, [base + m for m in neighbours]))
+
+    def _pair(self, copy: tuple[IntArray, FloatArray] | None) -> tuple[int, int, float] | None:
+        """(a, b, t) of a copy on a grid edge, directed along +x or +y; a vertex pairs with a neighbour."""
+        if copy is None:
+            return None
+        vertices, weights = copy
+        counting = int(np.count_nonzero(weights))
+        if counting == 2:
+            a, b, t = int(vertices[0]), int(vertices[1]), float(weights[1])
+            if self.flat[b].sum() < self.flat[a].sum():
+                a, b, t = b, a, 1.0 - t
+            return a, b, t
+        if counting == 1:
+            a = int(vertices[0])
+            around = self.topology.neighbours[a]
+            for direction in range(4):
+                if around[direction] >= 0:
+                    return a, int(around[direction]), 0.0
+        return None
+
+    def _edges(self, row: _Row, tangent: FloatArray) -> tuple[list[int], list[int], float]:
+        none = ([-1, -1], [-1, -1], np.nan)
+        if row.end or row.left is None or row.right is None:
+            return none
+        counting = int(np.count_nonzero(row.left[1]))
+        if counting == 2:
+            left, right = self._pair(row.left), self._pair(row.right)
+            assert left is not None
+            if right is None or left[:2] == right[:2]:
+                return none
+            edges = [left[0], left[1]], [right[0], right[1]]
+        elif counting == 1:
+            # On a grid vertex: the most transverse grid direction, inward on each side.
+            axis = int(abs(tangent[0]) > abs(tangent[1]))
+            normal = np.array([-tangent[1], tangent[0]])  # to the left
+            to_left = axis if normal[axis] > 0 else axis + 2
+            a, b = int(row.left[0][0]), int(row.right[0][0])
+            outer_left = int(self.topology.neighbours[a, to_left])
+            outer_right = int(self.topology.neighbours[b, (to_left + 2) % 4])
+            if a == b or outer_left < 0 or outer_right < 0:
+                return none
+            edges = [a, outer_left], [outer_right, b]
+        else:
+            return none
+        step = self.flat[edges[0][1]] - self.flat[edges[0][0]]
+        cosine = float(step @ tangent / np.hypot(*step))
+        if abs(cosine) > np.cos(MIN_EDGE_ANGLE):
+            return none
+        return *edges, cosine * cosine
+
+    def _fold_stencil(
+        self, rows: list[_Row], k: int, closed: bool, length: float
+    ) -> tuple[list[int], list[float], list[int]] | None:
+        row = rows[k]
+        left, right = self._pair(row.left), self._pair(row.right)
+        if row.end or left is None or right is None or left[:2] == right[:2]:
+            return None
+        if not MIN_EDGE_PART <= left[2] <= 1 - MIN_EDGE_PART:
+            return None
+        found = [self._neighbour(rows, k, step, closed, length) for step in (-1, 1)]
+        if found[0] is None or found[1] is None:
+            return None
+        (m_before, before), (m_after, after) = found[0], found[1]
+        here = self._place(left)
+        back, front = self._place(before) - here, self._place(after) - here
+        edge = self.flat[left[1]] - self.flat[left[0]]
+        nb, nf, ne, nc = (float(np.hypot(*v)) for v in (back, front, edge, front - back))
+        curvature = 2 * abs(front[0] * back[1] - front[1] * back[0]) / (nb * nf * nc)
+        angle = min(_line_angle(edge / ne, back / nb), _line_angle(edge / ne, front / nf))
+        if curvature < MIN_CURVATURE or angle < MIN_EDGE_ANGLE:
+            return None
+        vertices = [*left[:2], *right[:2], *before[:2], *after[:2]]
+        return vertices, [left[2], before[2], after[2]], [m_before, m_after]
+
+    def _neighbour(
+        self, rows: list[_Row], k: int, step: int, closed: bool, length: float
+    ) -> tuple[int, tuple[int, int, float]] | None:
+        fallback = None
+        for n in range(1, len(rows)):
+            m = k + step * n
+            if closed:
+                m %= len(rows)
+            elif not 0 <= m < len(rows):
+                break
+            distance = abs(rows[m].along - rows[k].along)
+            distance = min(distance, length - distance) if closed else distance
+            pair = self._pair(rows[m].left)
+            if pair is None:
+                continue
+            if distance >= NEIGHBOUR_SPACING:
+                return m, pair
+            if distance >= NEIGHBOUR_SPACING_AT_END:
+                fallback = (m, pair)
+        return fallback
+
+    def _place(self, pair: tuple[int, int, float]) -> FloatArray:
+        a, b, t = pair
+        return (1 - t) * self.flat[a] + t * self.flat[b]
+
+    def finish(self) -> CreasePoints:
+        columns = list(zip(*self.rows, strict=True)) if self.rows else [()] * 13
+        shapes: list[tuple[type, tuple[int | None, ...]]] = [
+            (float, (None, 2)), (int, (None,)), (int, (None,)), (float, (None,)), (bool, (None,)),
+            (float, (None, 2)), (int, (None, 4)), (float, (None, 4)), (int, (None, 4)), (float, (None, 4)),
+            (int, (None, 2)), (int, (None, 2)), (float, (None,)),
+        ]  # fmt: skip
+        arrays = [
+            frozen_array(column, dtype, shape, "crease points")
+            for column, (dtype, shape) in zip(columns, shapes, strict=True)
+        ]
+        return CreasePoints(
+            *arrays,
+            carrier=frozen_array(self.carrier, int, (None,), "carrier"),
+            fold_vertices=frozen_array([v for v, _, _ in self.fold], int, (None, 8), "fold_vertices"),
+            fold_weights=frozen_array([w for _, w, _ in self.fold], float, (None, 3), "fold_weights"),
+            fold_neighbours=frozen_array([n for _, _, n in self.fold], int, (None, 2), "fold_neighbours"),
+        )
+
+
+def _line_angle(u: FloatArray, v: FloatArray) -> float:
+    return float(np.arctan2(abs(u[0] * v[1] - u[1] * v[0]), abs(u @ v)))
+
+
+def _tangents(points: FloatArray, along: FloatArray, length: float, closed: bool) -> FloatArray:
+    line = LineString(points)
+    step = min(_TANGENT_STEP, 0.05 * length)
+    before, after = along - step, along + step
+    if closed:
+        before, after = before % length, after % length
+    else:
+        before, after = np.clip(before, 0, length), np.clip(after, 0, length)
+    ends = [shapely.get_coordinates(shapely.line_interpolate_point(line, s)) for s in (before, after)]
+    result = ends[1] - ends[0]
+    return np.asarray(result / np.hypot(*result.T)[:, None])

@@ -1,0 +1,224 @@
+"""The drawing laid over the grid: nodes, segments and the faces (cell pieces) that they bound.
+
+Every face lies in one grid cell and in one patch. Noding by shapely, faces by half-edge traversal.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from shapely import LineString
+
+from ..arrays import BoolArray, FloatArray, IntArray
+from ..pattern.arrangement import Arrangement, nearest_line, segments_of
+from .grid import OrthogonalGrid
+
+#: Noding grid, cell lengths: nodes snap to multiples of it. Far above rounding at 1,000 cells.
+NODE = 1e-8
+#: A point this near to a line lies on it, cell lengths (snapping moves nodes by about NODE).
+ON_LINE = 2e-7
+#: Pieces of a cell smaller than this part of it carry no quad of their own.
+MIN_PIECE = 1e-6
+#: The crease points around a patch must span this area, cells; below it the patch joins a neighbour.
+#: A hinge must be this long, twice over (a hull's outline), cell lengths.
+MIN_HOLD, MIN_HINGE = 0.02, 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Overlay:
+    """points (N,2) nodes; line_x, line_y (N,) grid line through a node or -1.
+
+    segments (S,2) nodes; chain (S,) crease chain or -1; border (S,) on the sheet's rim
+    left, right (S,) face on each side of the segment's direction, -1 outside the sheet
+    loop_start (F+1,), loop_nodes (L,) the faces' outlines, counter-clockwise
+    cell (F,2) grid cell of a face; patch (F,) patch of a face; area (F,)
+    """
+
+    points: FloatArray
+    line_x: IntArray
+    line_y: IntArray
+    segments: IntArray
+    chain: IntArray
+    border: BoolArray
+    left: IntArray
+    right: IntArray
+    loop_start: IntArray
+    loop_nodes: IntArray
+    cell: IntArray
+    patch: IntArray
+    area: FloatArray
+    lost_chains: tuple[int, ...]
+
+
+def overlay(arrangement: Arrangement, grid: OrthogonalGrid) -> Overlay:
+    """Lay an arrangement over its grid. All coordinates in cell lengths."""
+    sheet = arrangement.sheet
+    chains = [LineString(chain.points) for chain in arrangement.chains]
+    x0, x1, y0, y1 = grid.xs[0], grid.xs[-1], grid.ys[0], grid.ys[-1]
+    verticals = [LineString([(x, y0), (x, y1)]) for x in grid.xs]
+    horizontals = [LineString([(x0, y), (x1, y)]) for y in grid.ys]
+    merged = shapely.union_all([sheet.boundary, *chains, *verticals, *horizontals], grid_size=NODE)
+    segments, points = segments_of(merged, NODE)
+    line_x, line_y = _line_of(points[:, 0], grid.xs), _line_of(points[:, 1], grid.ys)
+    middle = 0.5 * (points[segments[:, 0]] + points[segments[:, 1]])
+    rims = [LineString(ring.coords) for ring in (sheet.exterior, *sheet.interiors)]
+    border = nearest_line(rims, middle, ON_LINE) >= 0
+    chain = nearest_line(chains, middle, ON_LINE)
+    chain[border] = -1
+    shapely.prepare(sheet)
+    keep = border | (chain >= 0) | shapely.contains_xy(sheet, middle)
+    segments, chain, border = segments[keep], chain[keep], border[keep]
+    keep = _main_component(segments, len(points), line_x, line_y)
+    keep &= _not_dangling(segments, keep, len(points))
+    lost = sorted(set(chain[~keep].tolist()) - set(chain[keep].tolist()) - {-1})
+    segments, chain, border = segments[keep], chain[keep], border[keep]
+    while True:
+        left, right, loop_start, loop_nodes, area = _faces(points, segments)
+        island = _island(points, line_x, line_y, segments, chain, border, left, right, len(area))
+        if not island.any():
+            break
+        lost = sorted(set(lost) | set(chain[island].tolist()))
+        keep = ~island
+        keep &= _not_dangling(segments, keep, len(points))
+        segments, chain, border = segments[keep], chain[keep], border[keep]
+    centre = np.add.reduceat(points[loop_nodes], loop_start[:-1], axis=0) / np.diff(loop_start)[:, None]
+    cell = np.column_stack(
+        [
+            np.clip(np.searchsorted(grid.xs, centre[:, 0]) - 1, 0, len(grid.xs) - 2),
+            np.clip(np.searchsorted(grid.ys, centre[:, 1]) - 1, 0, len(grid.ys) - 2),
+        ]
+    )
+    through = (chain < 0) & ~border & (left >= 0) & (right >= 0)
+    patch = _components(left[through], right[through], len(area))
+    return Overlay(
+        points,
+        line_x,
+        line_y,
+        segments,
+        chain,
+        border,
+        left,
+        right,
+        loop_start,
+        loop_nodes,
+        cell,
+        patch,
+        area,
+        tuple(lost),
+    )
+
+
+def _island(
+    points: FloatArray,
+    line_x: IntArray,
+    line_y: IntArray,
+    segments: IntArray,
+    chain: IntArray,
+    border: BoolArray,
+    left: IntArray,
+    right: IntArray,
+    faces: int,
+) -> BoolArray:
+    """Crease segments (S,) to give up around one patch that too few crease points would hold; all False: none.
+
+    A patch hangs on its neighbours at points on grid lines; where these span no area it could turn freely.
+    """
+    inner = ~border & (left >= 0) & (right >= 0)
+    through = inner & (chain < 0)
+    patch = _components(left[through], right[through], faces)
+    none = np.zeros(len(segments), dtype=bool)
+    held = (line_x >= 0) | (line_y >= 0)
+    rim = inner & (chain >= 0)
+    for one in range(int(patch.max()) + 1):
+        mine = rim & ((patch[left] == one) != (patch[right] == one))
+        if not mine.any():
+            continue
+        nodes = np.unique(segments[mine])
+        hull = shapely.MultiPoint(points[nodes[held[nodes]]]).convex_hull
+        if hull.area >= MIN_HOLD or hull.length >= MIN_HINGE:
+            continue
+        other = np.where(patch[left] == one, patch[right], patch[left])
+        lengths = np.hypot(*(points[segments[:, 1]] - points[segments[:, 0]]).T)
+        shared = np.bincount(other[mine], weights=lengths[mine])
+        return np.asarray(mine & (other == int(shared.argmax())))
+    return none
+
+
+def _line_of(values: FloatArray, lines: FloatArray) -> IntArray:
+    near = np.clip(np.searchsorted(lines, values), 1, len(lines) - 1)
+    near = np.where(values - lines[near - 1] < lines[near] - values, near - 1, near)
+    return np.where(np.abs(lines[near] - values) <= ON_LINE, near, -1)
+
+
+def _components(a: IntArray, b: IntArray, count: int) -> IntArray:
+    """Label (count,) of the connected component of each of ``count`` things joined by pairs (a, b)."""
+    graph = coo_matrix((np.ones(len(a)), (a, b)), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
+
+
+def _main_component(segments: IntArray, count: int, line_x: IntArray, line_y: IntArray) -> BoolArray:
+    """Segments of the component that most grid vertices belong to: lone curves inside a cell drop out."""
+    label = _components(segments[:, 0], segments[:, 1], count)
+    corner = (line_x >= 0) & (line_y >= 0)
+    main = np.bincount(label, weights=corner.astype(float)).argmax()
+    return np.asarray(label[segments[:, 0]] == main)
+
+
+def _not_dangling(segments: IntArray, alive: BoolArray, count: int) -> BoolArray:
+    """False for dead ends inside a cell: they bound no face."""
+    keep = alive.copy()
+    while True:
+        degree = np.bincount(segments[keep].ravel(), minlength=count)
+        dead = keep & ((degree[segments] == 1).any(axis=1))
+        if not dead.any():
+            return keep
+        keep &= ~dead
+
+
+def _faces(points: FloatArray, segments: IntArray) -> tuple[IntArray, IntArray, IntArray, IntArray, FloatArray]:
+    count = len(segments)
+    tail = np.concatenate([segments[:, 0], segments[:, 1]])
+    head = np.concatenate([segments[:, 1], segments[:, 0]])
+    direction = points[head] - points[tail]
+    angle = np.arctan2(direction[:, 1], direction[:, 0])
+    order = np.lexsort((angle, tail))
+    rank = np.empty(2 * count, dtype=np.int64)
+    rank[order] = np.arange(2 * count)
+    start = np.searchsorted(tail[order], np.arange(len(points) + 1))
+    # After half-edge h comes, around its head, the one clockwise before h's twin: the face on the left.
+    twin = np.concatenate([np.arange(count, 2 * count), np.arange(count)])
+    position = rank[twin] - 1
+    first = start[head]
+    position = np.where(position < first, start[head + 1] - 1, position)
+    following = order[position]
+    label = np.full(2 * count, -1, dtype=np.int64)
+    loops: list[list[int]] = []
+    next_list = following.tolist()
+    seen = bytearray(2 * count)
+    for h in range(2 * count):
+        if seen[h]:
+            continue
+        loop = []
+        while not seen[h]:
+            seen[h] = 1
+            loop.append(h)
+            h = next_list[h]
+        loops.append(loop)
+    starts = np.concatenate([[0], np.cumsum([len(loop) for loop in loops])])
+    flat = np.array([h for loop in loops for h in loop], dtype=np.int64)
+    p, q = points[tail[flat]], points[head[flat]]
+    # Cross products about each loop's first point keep small faces accurate.
+    base = points[tail[flat[starts[:-1]]]].repeat(np.diff(starts), axis=0)
+    cross = (p - base)[:, 0] * (q - base)[:, 1] - (p - base)[:, 1] * (q - base)[:, 0]
+    area = 0.5 * np.add.reduceat(cross, starts[:-1])
+    inside = area > 0
+    number = np.where(inside, np.cumsum(inside) - 1, -1)
+    label[flat] = number.repeat(np.diff(starts))
+    kept = inside.repeat(np.diff(starts))
+    lengths = np.diff(starts)[inside]
+    loop_start = np.concatenate([[0], np.cumsum(lengths)])
+    return label[:count], label[count:], loop_start, tail[flat][kept], area[inside]

@@ -1,0 +1,149 @@
+"""The shown surface as a linear map of the net: the outside culled, crease edges exact, no cracks."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from scipy.sparse import csr_matrix
+from shapely import LineString
+
+from ..arrays import BoolArray, FloatArray, IntArray
+from .net_points import NodeCopies
+from .overlay import Overlay
+
+#: Nodes of a curve inside a cell are kept where dropping them would move it by more than this, cell lengths.
+_FLATNESS = 2e-3
+
+
+@dataclass(frozen=True, eq=False)
+class RenderMap:
+    """A polygon mesh whose vertices are linear in the net's.
+
+    weights (R,V) sparse; uv (R,2) the flat sheet, drawing units
+    face_start (F+1,), face_vertices (L,) loops, counter-clockwise on the flat sheet; face_patch (F,)
+    crease_edges (n,2) mesh edges on creases; crease_edge_crease (n,), crease_edge_chain (n,)
+    A crease point is the mean of its copies, so both sides of a crease share their vertices exactly.
+    """
+
+    weights: csr_matrix
+    uv: FloatArray
+    face_start: IntArray
+    face_vertices: IntArray
+    face_patch: IntArray
+    crease_edges: IntArray
+    crease_edge_crease: IntArray
+    crease_edge_chain: IntArray
+
+    def apply(self, positions: FloatArray) -> FloatArray:
+        """Surface vertices (R,3) of net vertices (V,3)."""
+        return np.asarray(self.weights @ positions)
+
+    def faces(self) -> list[IntArray]:
+        """The loops one by one."""
+        return np.split(self.face_vertices, self.face_start[1:-1])
+
+
+def build_render_map(
+    over: Overlay, copies: NodeCopies, chain_crease: IntArray, uv: FloatArray, vertex_count: int
+) -> RenderMap:
+    """uv (N,2): the overlay's nodes in drawing units."""
+    keep = _kept_nodes(over) & (np.diff(copies.start) > 0)
+    number = np.where(keep, np.cumsum(keep) - 1, -1)
+    share = 1.0 / np.maximum(np.diff(copies.start), 1)
+    some = keep[copies.node]
+    rows = np.repeat(number[copies.node[some]], 4)
+    values = (copies.weights[some] * share[copies.node[some]][:, None]).ravel()
+    weights = csr_matrix((values, (rows, copies.vertices[some].ravel())), shape=(int(keep.sum()), vertex_count))
+    weights.eliminate_zeros()
+    starts, loops, patches = [0], [], []
+    for f, loop in enumerate(np.split(over.loop_nodes, over.loop_start[1:-1])):
+        loop = number[loop]
+        loop = loop[loop >= 0]
+        if len(loop) < 3:
+            continue
+        loops.append(loop)
+        starts.append(starts[-1] + len(loop))
+        patches.append(over.patch[f])
+    edges, chains = _crease_edges(over, number)
+    return RenderMap(
+        weights,
+        uv[keep],
+        np.array(starts, dtype=np.int64),
+        np.concatenate(loops),
+        np.array(patches, dtype=np.int64),
+        edges,
+        chain_crease[chains],
+        chains,
+    )
+
+
+def _plain(over: Overlay) -> BoolArray:
+    """Nodes inside a cell that only give a curve its shape: two segments, same curve, off the grid."""
+    count = len(over.points)
+    degree = np.bincount(over.segments.ravel(), minlength=count)
+    low = np.full(count, np.iinfo(np.int64).max)
+    high = np.full(count, -2)
+    for end in (0, 1):
+        np.minimum.at(low, over.segments[:, end], over.chain)
+        np.maximum.at(high, over.segments[:, end], over.chain)
+    return (degree == 2) & (low == high) & (over.line_x < 0) & (over.line_y < 0)
+
+
+def _runs(over: Overlay) -> list[list[int]]:
+    """Node paths along curves between nodes that are not plain; closed runs inside a cell do not exist."""
+    plain = _plain(over)
+    curve = (over.chain >= 0) | over.border
+    around: dict[int, list[int]] = {}
+    for a, b in over.segments[curve].tolist():
+        around.setdefault(a, []).append(b)
+        around.setdefault(b, []).append(a)
+    runs = []
+    done: set[tuple[int, int]] = set()
+    for start in around:
+        if plain[start]:
+            continue
+        for step in around[start]:
+            if (start, step) in done:
+                continue
+            path = [start, step]
+            while plain[path[-1]]:
+                onward = [n for n in around[path[-1]] if n != path[-2]]
+                if not onward:
+                    break
+                path.append(onward[0])
+            done.add((path[0], path[1]))
+            done.add((path[-1], path[-2]))
+            runs.append(path)
+    return runs
+
+
+def _kept_nodes(over: Overlay) -> BoolArray:
+    keep = np.zeros(len(over.points), dtype=bool)
+    keep[over.segments.ravel()] = True
+    plain = _plain(over)
+    keep[plain] = False
+    for run in _runs(over):
+        if len(run) < 3:
+            continue
+        points = over.points[run]
+        simple = shapely.get_coordinates(LineString(points).simplify(_FLATNESS))
+        kept = (points[:, None, :] == simple[None, :, :]).all(axis=2).any(axis=1)
+        keep[np.array(run)[kept]] = True
+    return keep
+
+
+def _crease_edges(over: Overlay, number: IntArray) -> tuple[IntArray, IntArray]:
+    chain_of = {(a, b): c for (a, b), c in zip(over.segments.tolist(), over.chain.tolist(), strict=True)}
+    edges, chains = [], []
+    for run in _runs(over):
+        chain = chain_of[min(run[0], run[1]), max(run[0], run[1])]
+        if chain < 0:
+            continue
+        kept = [number[n] for n in run if number[n] >= 0]
+        for a, b in itertools.pairwise(kept):
+            edges.append((a, b))
+            chains.append(chain)
+    return np.array(edges, dtype=np.int64).reshape(-1, 2), np.array(chains, dtype=np.int64)

@@ -1,0 +1,476 @@
+"""Creases and border cut at their crossings: a planar graph of curves, cleaned of what a hand leaves behind.
+
+Coordinates are those of the caller (the grid's frame, cell lengths); shapely does the noding.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+from shapely import LineString, MultiPolygon, Point, Polygon
+
+from ..arrays import FloatArray, IntArray
+from ..errors import PatternError
+from .curves import CORNER, drop_repeats
+
+#: Ends nearer than this to the border, to a crease or to each other are joined; part of the longer side.
+SNAP_TOLERANCE = 2e-3
+#: Nodes nearer than this are one node; part of the longer side. Far above rounding, far below any drawing.
+NODE_TOLERANCE = 1e-9
+
+#: Where a vertex of the arrangement comes from.
+CROSSING, JUNCTION, END, CORNER_POINT = "crossing", "border junction", "end", "corner"
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """A piece of a crease between two vertices of the arrangement (or a whole closed crease).
+
+    points (P,2) in the direction of its crease; a closed chain repeats its first point.
+    """
+
+    points: FloatArray
+    crease: int
+    closed: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Arrangement:
+    """The planar arrangement of a sheet.
+
+    sheet     shapely polygon, holes cut out
+    chains    crease pieces between vertices
+    vertices  (N,2) crease vertices: crossings, junctions with the border, free ends, corners of creases
+    kinds     (N,) what each vertex is
+    notes     what was repaired, one sentence each
+    """
+
+    sheet: Polygon
+    chains: tuple[Chain, ...]
+    vertices: FloatArray
+    kinds: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def sheet_polygon(boundary: FloatArray, holes: tuple[FloatArray, ...]) -> Polygon:
+    """The sheet as a valid shapely polygon. Raises PatternError naming the place where it crosses itself."""
+    outline = Polygon(boundary)
+    if not outline.is_valid:
+        raise PatternError("the border crosses itself", element="border", place=_invalid_place(outline))
+    rings = []
+    for k, hole in enumerate(holes):
+        ring = Polygon(hole)
+        if not ring.is_valid:
+            raise PatternError("the hole crosses itself", element=f"hole {k + 1}", place=_invalid_place(ring))
+        rings.append(ring)
+    sheet = outline.difference(shapely.union_all(rings)) if rings else outline
+    if isinstance(sheet, MultiPolygon):
+        raise PatternError(f"the holes cut the sheet into {len(sheet.geoms)} pieces", element="border")
+    if sheet.is_empty:
+        raise PatternError("the holes leave nothing of the sheet", element="border")
+    return sheet
+
+
+def _invalid_place(polygon: Polygon) -> tuple[float, ...] | None:
+    reason = shapely.is_valid_reason(polygon)
+    if "[" not in reason:
+        return None
+    return tuple(float(word) for word in reason.split("[")[1].rstrip("]").split())
+
+
+def arrange(
+    sheet: Polygon,
+    lines: list[FloatArray],
+    labels: list[str],
+    locate: Callable[[FloatArray], FloatArray] = lambda points: points,
+) -> Arrangement:
+    """Cut crease polylines at their crossings and mend near misses.
+
+    lines   (P,2) arrays, one a crease; closed ones repeat their first point
+    labels  names for notes and errors, one a crease
+    locate  turns (N,2) places into the user's coordinates, for notes
+    Raises PatternError when no crease is left on the sheet.
+    """
+    x0, y0, x1, y1 = sheet.bounds
+    size = max(x1 - x0, y1 - y0)
+    tolerance, node = SNAP_TOLERANCE * size, NODE_TOLERANCE * size
+    notes: list[str] = []
+    parts = _trim(sheet, lines, labels, tolerance, notes)
+    if not parts:
+        raise PatternError("no crease lies on the sheet, so there is nothing to fold", element="creases")
+    parts = _snap_ends(sheet, parts, labels, tolerance, notes)
+    segments, owner, points = _node(sheet, parts, node)
+    segments, owner, points = _merge_vertices(segments, owner, points, tolerance)
+    segments, owner = _drop_whiskers(segments, owner, points, tolerance)
+    segments, owner = _drop_slivers(segments, owner, points, tolerance, labels, notes, locate)
+    if not (owner >= 0).any():
+        raise PatternError("no crease is left inside the sheet: nothing to fold", element="creases")
+    chains, vertices, kinds = _chains(segments, owner, points, lines)
+    return Arrangement(sheet, chains, vertices, kinds, tuple(notes))
+
+
+def _trim(
+    sheet: Polygon, lines: list[FloatArray], labels: list[str], tolerance: float, notes: list[str]
+) -> list[tuple[FloatArray, int]]:
+    parts: list[tuple[FloatArray, int]] = []
+    # Runs along the border are border: keep only what is inside by a hair.
+    border = sheet.boundary
+    shapely.prepare(sheet)
+    for k, points in enumerate(lines):
+        line = LineString(points)
+        if line.length < tolerance:
+            notes.append(f"{labels[k]} is shorter than the snap tolerance and was left out")
+            continue
+        inside = line if sheet.contains(line) else _lines_of(line.intersection(sheet))
+        length = inside.length
+        if length < tolerance:
+            notes.append(f"{labels[k]} lies off the sheet and was left out")
+            continue
+        if line.length - length > tolerance:
+            notes.append(f"{labels[k]} sticks out of the sheet and was trimmed at the border")
+        along_border = border.buffer(1e-7 * tolerance)
+        if line.intersects(border):
+            inside = _lines_of(inside.difference(along_border)) if _overlaps(inside, border) else inside
+        pieces = list(inside.geoms) if hasattr(inside, "geoms") else [inside]
+        pieces = _rejoin(pieces, points)
+        for piece in pieces:
+            if piece.length >= tolerance:
+                parts.append((drop_repeats(shapely.get_coordinates(piece)), k))
+    return parts
+
+
+def _overlaps(line: LineString, border: LineString) -> bool:
+    return bool(_lines_of(line.intersection(border)).length > 0)
+
+
+def _lines_of(geometry: shapely.Geometry) -> shapely.MultiLineString:
+    """The line parts of any geometry."""
+    found = [g for g in shapely.get_parts(geometry, return_index=False) if g.geom_type == "LineString"]
+    nested = [g for g in shapely.get_parts(geometry) if hasattr(g, "geoms")]
+    for group in nested:
+        found.extend(g for g in group.geoms if g.geom_type == "LineString")
+    return shapely.MultiLineString([g for g in found if g.length > 0])
+
+
+def _rejoin(pieces: list[LineString], points: FloatArray) -> list[LineString]:
+    """Join pieces that shapely cut at a self-crossing or at a closed curve's start, and orient them."""
+    if len(pieces) == 1:
+        return pieces
+    merged = shapely.line_merge(shapely.MultiLineString(pieces))
+    result = list(merged.geoms) if hasattr(merged, "geoms") else [merged]
+    whole = LineString(points)
+    oriented = []
+    for piece in result:
+        coordinates = shapely.get_coordinates(piece)
+        middle = len(coordinates) // 2
+        first = whole.project(Point(coordinates[max(middle - 1, 0)]))
+        second = whole.project(Point(coordinates[min(middle, len(coordinates) - 1)]))
+        oriented.append(piece if second >= first else LineString(coordinates[::-1]))
+    return oriented
+
+
+def _snap_ends(
+    sheet: Polygon,
+    parts: list[tuple[FloatArray, int]],
+    labels: list[str],
+    tolerance: float,
+    notes: list[str],
+) -> list[tuple[FloatArray, int]]:
+    border = sheet.boundary
+    ends = [
+        (k, side, points[0] if side == 0 else points[-1])
+        for k, (points, _) in enumerate(parts)
+        if not np.array_equal(points[0], points[-1])
+        for side in (0, 1)
+    ]
+    if not ends:
+        return parts
+    places = np.array([place for _, _, place in ends])
+    target = places.copy()
+    moved = np.zeros(len(ends), dtype=bool)
+    to_border = shapely.distance(shapely.points(places), border)
+    on_border = to_border <= tolerance
+    for n in np.flatnonzero(on_border):
+        nearest = border.interpolate(border.project(Point(places[n])))
+        target[n] = nearest.x, nearest.y
+        moved[n] = True
+    # Ends that meet each other: one common point, the mean; a point on the border wins.
+    for n in range(len(ends)):
+        close = np.flatnonzero(np.hypot(*(places - places[n]).T) <= tolerance)
+        if len(close) > 1 and close[0] == n:
+            fixed = close[on_border[close]]
+            target[close] = target[fixed[0]] if len(fixed) else places[close].mean(axis=0)
+            moved[close] = True
+    result = [points.copy() for points, _ in parts]
+    for n, (k, _side, place) in enumerate(ends):
+        if moved[n]:
+            continue
+        others = [LineString(points) for j, (points, _) in enumerate(parts) if j != k]
+        own = _far_part(parts[k][0], _side, 4 * tolerance)
+        candidates = [*others, own] if own is not None else others
+        if not candidates:
+            continue
+        distances = shapely.distance(Point(place), candidates)
+        best = int(np.argmin(distances))
+        if distances[best] <= tolerance:
+            line = candidates[best]
+            nearest = line.interpolate(line.project(Point(place)))
+            target[n] = nearest.x, nearest.y
+            moved[n] = True
+    for n, (k, side, place) in enumerate(ends):
+        gap = float(np.hypot(*(target[n] - place)))
+        if not moved[n] or gap == 0.0:
+            continue
+        row = result[k]
+        result[k] = np.vstack([target[n][None], row]) if side == 0 else np.vstack([row, target[n][None]])
+        if gap > 1e-3 * tolerance:
+            notes.append(f"an end of {labels[parts[k][1]]} missed by a little and was joined")
+    return [(drop_repeats(points), crease) for points, (_, crease) in zip(result, parts, strict=True)]
+
+
+def _far_part(points: FloatArray, side: int, distance: float) -> LineString | None:
+    """The polyline without the part within ``distance`` (along it) of its end ``side``."""
+    row = points if side == 0 else points[::-1]
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(row, axis=0).T))])
+    rest = row[along > distance]
+    return LineString(rest) if len(rest) > 1 else None
+
+
+def _node(
+    sheet: Polygon, parts: list[tuple[FloatArray, int]], node: float
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """Segments (S,2) of node indices, the crease that owns each (-1 border), node coordinates (N,2)."""
+    creases = [LineString(points) for points, _ in parts]
+    # Targets of snapped ends lie on their line only up to rounding: put a node there.
+    ends = shapely.MultiPoint([p for points, _ in parts for p in (points[0], points[-1])])
+    border = shapely.snap(sheet.boundary, ends, 10 * node)
+    creases = [shapely.snap(line, ends, 10 * node) for line in creases]
+    merged = shapely.union_all([border, *creases], grid_size=node)
+    segments, points = segments_of(merged, node)
+    middle = 0.5 * (points[segments[:, 0]] + points[segments[:, 1]])
+    owner = nearest_line(creases, middle, 50 * node)
+    owner = np.where(owner >= 0, np.array([crease for _, crease in parts])[owner], -1)
+    on_border = shapely.distance(shapely.points(middle), border) < 50 * node
+    owner[on_border] = -1
+    keep = (owner >= 0) | on_border
+    return segments[keep], owner[keep], points
+
+
+def segments_of(lines: shapely.Geometry, node: float) -> tuple[IntArray, FloatArray]:
+    """Unique undirected segments (S,2) of node indices and node coordinates (N,2) of noded lines."""
+    coordinates, index = shapely.get_coordinates(shapely.get_parts(lines), return_index=True)
+    # unique by value on the noding grid; the first occurrence keeps its exact coordinates
+    keys = np.round(coordinates / node).astype(np.int64)
+    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    inverse = inverse.reshape(-1)
+    joined = index[1:] == index[:-1]
+    segments = np.column_stack([inverse[:-1], inverse[1:]])[joined]
+    segments = np.sort(segments[segments[:, 0] != segments[:, 1]], axis=1)
+    return np.unique(segments, axis=0), coordinates[first]
+
+
+def nearest_line(lines: list[LineString], points: FloatArray, within: float) -> IntArray:
+    """Index (N,) of the first line within a distance of each point, -1 where there is none."""
+    result = np.full(len(points), -1, dtype=np.int64)
+    tree = shapely.STRtree(lines)
+    pairs = tree.query(shapely.points(points), predicate="dwithin", distance=within)
+    order = np.argsort(-pairs[1], kind="stable")  # the lowest index is written last and stays
+    result[pairs[0][order]] = pairs[1][order]
+    return result
+
+
+def _merge_vertices(
+    segments: IntArray, owner: IntArray, points: FloatArray, tolerance: float
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """One vertex where several lie within the tolerance: creases that should meet in a point but just miss.
+
+    A vertex on the border stays on the border; what was between the merged vertices disappears.
+    """
+    count = len(points)
+    on_border = np.zeros(count, dtype=bool)
+    on_border[segments[owner < 0].ravel()] = True
+    crease_degree = _degrees(segments[owner >= 0], count)
+    special = (crease_degree > 0) & (on_border | (crease_degree != 2))
+    marks = np.flatnonzero(special)
+    if len(marks) < 2:
+        return segments, owner, points
+    pairs = cKDTree(points[marks]).query_pairs(tolerance, output_type="ndarray")
+    if len(pairs) == 0:
+        return segments, owner, points
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(marks),) * 2)
+    _, label = connected_components(graph, directed=False)
+    target = np.arange(count)
+    points = points.copy()
+    for cluster in np.flatnonzero(np.bincount(label) > 1):
+        members = marks[label == cluster]
+        rim = members[on_border[members]]
+        # One border junction each: two junctions nearer than the tolerance would otherwise pull the border in.
+        keep = int(rim[0]) if len(rim) else int(members[0])
+        if not len(rim):
+            points[keep] = points[members].mean(axis=0)
+        reach = np.hypot(*(points[members] - points[keep]).T).max() * (1 + 1e-9)
+        near = np.flatnonzero(np.hypot(*(points - points[keep]).T) <= reach)
+        inside = near[~on_border[near] | np.isin(near, members)]
+        target[inside] = keep
+    segments = np.sort(target[segments], axis=1)
+    alive = segments[:, 0] != segments[:, 1]
+    segments, owner = segments[alive], owner[alive]
+    # Border first, then the earlier crease, where two segments have become one.
+    order = np.lexsort((owner, segments[:, 1], segments[:, 0]))
+    segments, owner = segments[order], owner[order]
+    first = np.ones(len(segments), dtype=bool)
+    first[1:] = (segments[1:] != segments[:-1]).any(axis=1)
+    return segments[first], owner[first], points
+
+
+def _degrees(segments: IntArray, count: int) -> IntArray:
+    return np.bincount(segments.ravel(), minlength=count)
+
+
+def _drop_whiskers(
+    segments: IntArray, owner: IntArray, points: FloatArray, tolerance: float
+) -> tuple[IntArray, IntArray]:
+    """Remove dead ends shorter than the tolerance: a crease drawn a little past another one."""
+    neighbours: dict[int, list[tuple[int, int]]] = defaultdict(list)
+    for s, (a, b) in enumerate(segments.tolist()):
+        neighbours[a].append((b, s))
+        neighbours[b].append((a, s))
+    drop: set[int] = set()
+    for start in [n for n, around in neighbours.items() if len(around) == 1]:
+        node, length, path = start, 0.0, []
+        came = -1
+        while True:
+            onward = [(m, s) for m, s in neighbours[node] if s != came]
+            if node != start and len(onward) != 1:
+                break
+            other, came = onward[0]
+            length += float(np.hypot(*(points[other] - points[node])))
+            path.append(came)
+            node = other
+            if length >= tolerance:
+                break
+        if length < tolerance and len(neighbours[node]) > 2:
+            drop.update(path)
+    if not drop:
+        return segments, owner
+    keep = np.ones(len(segments), dtype=bool)
+    keep[list(drop)] = False
+    return segments[keep], owner[keep]
+
+
+def _drop_slivers(
+    segments: IntArray,
+    owner: IntArray,
+    points: FloatArray,
+    tolerance: float,
+    labels: list[str],
+    notes: list[str],
+    locate: Callable[[FloatArray], FloatArray],
+) -> tuple[IntArray, IntArray]:
+    """Remove one side of every face thinner than the tolerance (curves drawn twice)."""
+    for _ in range(20):
+        lines = shapely.linestrings(points[segments])
+        faces = shapely.get_parts(shapely.polygonize(lines))
+        if len(faces) == 0:
+            return segments, owner
+        width = 2 * shapely.area(faces) / shapely.length(faces)
+        thin = np.flatnonzero(width < 0.5 * tolerance)
+        if len(thin) == 0:
+            return segments, owner
+        face = faces[thin[0]]
+        middle = 0.5 * (points[segments[:, 0]] + points[segments[:, 1]])
+        around = shapely.distance(shapely.points(middle), face.boundary) < 1e-6 * tolerance
+        candidates = np.unique(owner[around & (owner >= 0)])
+        if len(candidates) == 0:
+            return segments, owner
+        # The later crease gives way; a crease that doubles back on itself loses half of the sliver's rim.
+        loser = candidates[-1]
+        drop = around & (owner == loser)
+        if len(candidates) == 1 and not (around & (owner == -1)).any():
+            rim = shapely.get_coordinates(face.exterior)
+            half = LineString(rim[: len(rim) // 2 + 1])
+            drop &= shapely.distance(shapely.points(middle), half) < 1e-6 * tolerance
+        x, y = locate(shapely.get_coordinates(face.representative_point()))[0]
+        notes.append(f"{labels[loser]} runs along another line near ({x:.6g}, {y:.6g}): merged with it")
+        segments, owner = segments[~drop], owner[~drop]
+    return segments, owner
+
+
+def _chains(
+    segments: IntArray, owner: IntArray, points: FloatArray, lines: list[FloatArray]
+) -> tuple[tuple[Chain, ...], FloatArray, tuple[str, ...]]:
+    count = len(points)
+    crease = owner >= 0
+    crease_degree = _degrees(segments[crease], count)
+    border_degree = _degrees(segments[~crease], count)
+    neighbours: dict[int, list[tuple[int, int]]] = defaultdict(list)
+    for s in np.flatnonzero(crease).tolist():
+        a, b = segments[s].tolist()
+        neighbours[a].append((b, s))
+        neighbours[b].append((a, s))
+    kinds: dict[int, str] = {}
+    for n, around in neighbours.items():
+        if border_degree[n] > 0:
+            kinds[n] = JUNCTION
+        elif crease_degree[n] == 1:
+            kinds[n] = END
+        elif crease_degree[n] > 2:
+            kinds[n] = CROSSING
+        else:
+            (a, _), (b, _) = around
+            u, v = points[n] - points[a], points[b] - points[n]
+            turn = abs(np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v))
+            if turn > CORNER:
+                kinds[n] = CORNER_POINT
+            elif owner[around[0][1]] != owner[around[1][1]]:
+                kinds[n] = CROSSING
+    used: set[int] = set()
+    chains: list[Chain] = []
+
+    def walk(start: int, first: tuple[int, int]) -> None:
+        path, (node, segment) = [start], first
+        mark = segment
+        while True:
+            used.add(segment)
+            path.append(node)
+            if node in kinds or node == start:
+                break
+            node, segment = next((m, s) for m, s in neighbours[node] if s != segment)
+        row = points[np.array(path)]
+        closed = path[0] == path[-1] and start not in kinds
+        chains.append(Chain(_along(row, lines[owner[mark]]), int(owner[mark]), closed))
+
+    for n in sorted(kinds):
+        for step in sorted(neighbours[n]):
+            if step[1] not in used:
+                walk(n, step)
+    for n in sorted(neighbours):
+        for step in sorted(neighbours[n]):
+            if step[1] not in used:
+                walk(n, step)
+    chains.sort(key=lambda chain: (chain.crease, _start_on(chain.points, lines[chain.crease])))
+    order = sorted(kinds)
+    vertices = points[np.array(order, dtype=np.int64)].reshape(-1, 2)
+    return tuple(chains), vertices, tuple(kinds[n] for n in order)
+
+
+def _start_on(row: FloatArray, line: FloatArray) -> float:
+    middle = len(row) // 2
+    return float(LineString(line).project(Point(0.5 * (row[middle - 1] + row[middle]))))
+
+
+def _along(row: FloatArray, line: FloatArray) -> FloatArray:
+    """The chain turned to run in its crease's direction."""
+    whole = LineString(line)
+    middle = len(row) // 2
+    a, b = row[middle - 1], row[middle]
+    # Two points a quarter of the middle segment in: away from crossings and from a closed line's start.
+    near, far = whole.project(Point(0.75 * a + 0.25 * b)), whole.project(Point(0.25 * a + 0.75 * b))
+    return row if far >= near else row[::-1]

@@ -1,0 +1,446 @@
+"""From the tree of an SVG file to the outlines it draws: styles, transforms, <use>, visibility."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..errors import PatternError, ReadError
+from .svg_css import INHERITED, Stylesheet
+from .svg_curves import MAX_POINTS, Subpath
+from .svg_shapes import SHAPES, shape_subpaths
+from .svg_values import (
+    MM_PER_PIXEL,
+    UNKNOWN_COLOUR,
+    Colour,
+    Length,
+    SvgValueError,
+    parse_length,
+    parse_numbers,
+    parse_paint,
+    parse_transform,
+)
+from .svg_xml import MAX_DEPTH, Node
+
+#: Elements drawn, those repeated by <use> counted each time.
+MAX_ELEMENTS = 20_000
+#: Larger numbers cannot be squared and subtracted without losing the drawing.
+MAX_COORDINATE = 1e12
+#: What a browser assumes of an image without any size (CSS 2.1, section 10.3.2).
+_DEFAULT_VIEWPORT = (300.0, 150.0)
+
+_CONTAINERS = frozenset({"g", "a", "switch", "svg"})
+#: Drawn only when something refers to them, or never.
+_SILENT = frozenset(
+    {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "linearGradient", "radialGradient", "filter"}
+    | {"style", "title", "desc", "metadata", "script", "view", "font"}
+    | {"animate", "animateTransform", "animateMotion", "set"}
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """One drawn shape.
+
+    element   for messages, as ``<path> 3 (id 'a')``
+    identity  its id, or empty
+    subpaths  its outlines, in the drawing's units, y up
+    stroke    colour, None when the outline is not stroked
+    filled    whether its inside is painted
+    opacity   of the stroke, all factors multiplied
+    dashes    dash lengths, empty for a solid line
+    classes   class names, its own first, then those of its groups from the inside out
+    names     ids and layer names, its own first, then those of its groups from the inside out
+    """
+
+    element: str
+    identity: str
+    subpaths: tuple[Subpath, ...]
+    stroke: Colour | None
+    filled: bool
+    opacity: float
+    dashes: tuple[float, ...]
+    classes: tuple[str, ...]
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """All that a file draws; ``notes`` say what was left out on the way."""
+
+    shapes: tuple[Drawn, ...]
+    unit_mm: float | None
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """What an element hands down to its children."""
+
+    matrix: FloatArray
+    properties: dict[str, str]
+    opacity: float
+    width: float  # of the nearest viewport, for percentages
+    height: float
+    classes: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
+    depth: int = 0
+    used: tuple[Node, ...] = field(default=())
+
+
+def read_drawing(root: Node) -> Drawing:
+    """Walk the tree. Raises ReadError and PatternError."""
+    return _Walk(root).drawing()
+
+
+class _Walk:
+    """One pass over one file. Not reusable."""
+
+    def __init__(self, root: Node) -> None:
+        self._root = root
+        self._sheet = Stylesheet(root)
+        self._by_id: dict[str, Node] = {}
+        for node in root.walk():
+            if node.tag:
+                self._by_id.setdefault(node.attributes.get("id", ""), node)
+        self._by_id.pop("", None)
+        self._shapes: list[Drawn] = []
+        self._outlines: dict[Node, list[Subpath]] = {}
+        self._left_out: Counter[str] = Counter()
+        self._notes: list[str] = []
+        self._elements = 0
+        self._segments = 0
+        self._paper_units = False  # whether any length was given in units of paper
+
+    def drawing(self) -> Drawing:
+        root = self._root
+        viewport = self._viewport()
+        matrix = np.diag([1.0, viewport.stretch, 1.0])
+        state = _State(matrix, dict(INHERITED), 1.0, viewport.width, viewport.height)
+        style = self._sheet.style(root)
+        self._children(root, self._enter(root, style, state, named=False))
+        unit = viewport.unit_mm
+        if unit is None and self._paper_units and viewport.pixels_per_unit is not None:
+            # The shapes themselves are measured in paper units, which fixes what a pixel is.
+            unit = viewport.pixels_per_unit * MM_PER_PIXEL
+        shapes = self._shapes
+        if shapes:
+            middle = viewport.middle
+            if middle is None:
+                points = np.vstack([s.hull() for shape in shapes for s in shape.subpaths])
+                middle = float(points[:, 1].min() + points[:, 1].max())
+            flip = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, middle], [0.0, 0.0, 1.0]])
+            shapes = [replace(s, subpaths=tuple(p.transformed(flip) for p in s.subpaths)) for s in shapes]
+        if viewport.stretch != 1.0:
+            self._notes.append(
+                f"the drawing is shown stretched by {viewport.stretch:.6g} in y, and is read as it is shown"
+            )
+        self._notes += [f"{count} {what}" for what, count in self._left_out.items()]
+        if self._sheet.skipped:
+            self._notes.append(f"style rules that are not understood: {', '.join(self._sheet.skipped[:5])}")
+        return Drawing(tuple(shapes), unit, tuple(self._notes))
+
+    # ---- viewports
+
+    def _viewport(self) -> _Viewport:
+        attributes = self._root.attributes
+        width, height = (self._root_length(name) for name in ("width", "height"))
+        box = self._view_box(self._root)
+        sizes = [length for length in (width, height) if length is not None]
+        if box is None:
+            return _Viewport(
+                width.pixels if width else _DEFAULT_VIEWPORT[0],
+                height.pixels if height else _DEFAULT_VIEWPORT[1],
+                height.pixels if height else None,
+                MM_PER_PIXEL if any(length.absolute for length in sizes) else None,
+                1.0,
+            )
+        _, y, box_width, box_height = box
+        scales = (
+            None if width is None else width.pixels / box_width,
+            None if height is None else height.pixels / box_height,
+        )
+        known = [scale for scale in scales if scale is not None]
+        stretch = 1.0
+        scale: float | None = None
+        if len(known) == 2:
+            align, slice_ = _aspect(attributes)
+            if align == "none":
+                scale, stretch = known[0], known[1] / known[0]
+            else:
+                scale = max(known) if slice_ else min(known)
+        elif known:
+            scale = known[0]
+        absolute = bool(sizes) and all(length.absolute for length in sizes)
+        return _Viewport(
+            box_width,
+            box_height,
+            stretch * (2 * y + box_height),
+            scale * MM_PER_PIXEL if scale is not None and absolute else None,
+            scale,
+            stretch,
+        )
+
+    def _root_length(self, name: str) -> Length | None:
+        """The root's width or height; None when missing or relative. Raises ReadError when not positive."""
+        text = self._root.attributes.get(name, "auto").strip()
+        if text in ("", "auto"):
+            return None
+        try:
+            length = parse_length(text)
+        except SvgValueError as problem:
+            raise ReadError(f"{name}: {problem}", element="<svg>") from problem
+        if length.percent or length.unit in ("em", "rem", "ex", "ch"):
+            return None
+        if not length.pixels > 0.0:
+            raise ReadError(f"{name} is {text}, so that nothing is drawn", element="<svg>")
+        return length
+
+    def _view_box(self, node: Node) -> tuple[float, float, float, float] | None:
+        text = node.attributes.get("viewBox", "").strip()
+        if not text or text.lower() == "none":
+            return None
+        try:
+            values = parse_numbers(text, 4)
+        except SvgValueError as problem:
+            raise ReadError(f"viewBox: {problem}", element=str(node)) from problem
+        if len(values) != 4 or not (values[2] > 0.0 and values[3] > 0.0):
+            raise ReadError("viewBox is not four numbers with a positive width and height", element=str(node))
+        return values[0], values[1], values[2], values[3]
+
+    def _fit(self, node: Node, width: float, height: float) -> FloatArray:
+        """(3,3) matrix from the viewBox of an inner <svg> or <symbol> to its viewport."""
+        box = self._view_box(node)
+        if box is None:
+            return np.eye(3)
+        x, y, box_width, box_height = box
+        sx, sy = width / box_width, height / box_height
+        align, slice_ = _aspect(node.attributes)
+        if align != "none":
+            sx = sy = max(sx, sy) if slice_ else min(sx, sy)
+        spare = {"min": 0.0, "mid": 0.5, "max": 1.0}
+        tx = spare.get(align[1:4], 0.5) * (width - sx * box_width) - sx * x
+        ty = spare.get(align[5:8], 0.5) * (height - sy * box_height) - sy * y
+        return np.array([[sx, 0.0, tx], [0.0, sy, ty], [0.0, 0.0, 1.0]])
+
+    # ---- elements
+
+    def _children(self, node: Node, state: _State | None) -> None:
+        if state is None:
+            return
+        for child in node.children:
+            self._element(child, state)
+
+    def _element(self, node: Node, state: _State) -> None:
+        tag = node.tag
+        # All count, also those that draw nothing: a group full of them can be repeated as well.
+        self._elements += 1
+        if self._elements > MAX_ELEMENTS:
+            raise PatternError(f"the drawing has more than {MAX_ELEMENTS:,} elements")
+        if tag in _SILENT or not tag:
+            return
+        if state.depth > MAX_DEPTH:
+            raise PatternError(f"elements are nested more than {MAX_DEPTH} deep", element=str(node))
+        if tag not in _CONTAINERS and tag not in SHAPES and tag != "use":
+            self._left_out[f"<{tag}> left out: not a line"] += 1
+            return
+        try:
+            inner = self._enter(node, self._sheet.style(node), state)
+            if inner is None:
+                return
+            if tag in SHAPES:
+                self._shape(node, inner)
+            elif tag == "use":
+                self._use(node, inner)
+            elif tag == "svg":
+                self._children(node, self._inner_viewport(node, inner, node.attributes))
+            else:
+                self._children(node, inner)
+        except SvgValueError as problem:
+            raise PatternError(str(problem), element=str(node)) from problem
+
+    def _enter(self, node: Node, style: dict[str, str], state: _State, named: bool = True) -> _State | None:
+        """The state inside ``node``, None when it is not displayed."""
+        if style.get("display", "").lower() == "none":
+            self._left_out[f"<{node.tag}> left out: not displayed"] += 1
+            return None
+        properties = dict(state.properties)
+        for name, initial in INHERITED.items():
+            value = style.get(name)
+            if value is not None and value.lower() not in ("inherit", "unset"):
+                properties[name] = initial if value.lower() == "initial" else value
+        if style.get("clip-path", "none").lower() != "none" or style.get("mask", "none").lower() != "none":
+            self._left_out[f"<{node.tag}> read whole: clipping is not applied"] += 1
+        matrix = state.matrix
+        # The root's own transform is SVG 2; style= and rules may set one as well.
+        if transform := style.get("transform", ""):
+            with np.errstate(over="ignore", invalid="ignore"):
+                matrix = matrix @ parse_transform(transform)
+            if not np.isfinite(matrix).all():
+                raise SvgValueError("the transforms together are not finite")
+        own = node.attributes if named else {}
+        names = [own.get("id", ""), own.get("inkscape:label", ""), own.get("data-name", "")]
+        return replace(
+            state,
+            matrix=matrix,
+            properties=properties,
+            opacity=state.opacity * _opacity(style.get("opacity", "1")),
+            classes=(*node.classes, *state.classes) if named else (),
+            names=(*(name for name in names if name), *state.names),
+            depth=state.depth + 1,
+        )
+
+    def _inner_viewport(self, node: Node, state: _State, attributes: dict[str, str]) -> _State | None:
+        def length(name: str, default: str, whole: float) -> float:
+            text = attributes.get(name, "").strip() or default
+            return self._length(parse_length(default if text == "auto" else text), whole)
+
+        x, y = length("x", "0", state.width), length("y", "0", state.height)
+        width, height = length("width", "100%", state.width), length("height", "100%", state.height)
+        if not (width > 0.0 and height > 0.0):
+            return None
+        move = np.array([[1.0, 0.0, x], [0.0, 1.0, y], [0.0, 0.0, 1.0]])
+        box = self._view_box(node)
+        return replace(
+            state,
+            matrix=state.matrix @ move @ self._fit(node, width, height),
+            width=width if box is None else box[2],
+            height=height if box is None else box[3],
+        )
+
+    def _use(self, node: Node, state: _State) -> None:
+        href = node.attributes.get("href", "").strip()
+        if not href.startswith("#"):
+            self._left_out["<use> left out: it refers to another file"] += 1
+            return
+        target = self._by_id.get(href[1:])
+        if target is None:
+            raise PatternError(f"it refers to {href[:40]!r}, which is not in the file", element=str(node))
+        if target in state.used:
+            raise PatternError(f"it refers to itself through {href[:40]!r}", element=str(node))
+        state = replace(state, used=(*state.used, target))
+        if target.tag not in ("symbol", "svg"):
+            x = self._length(parse_length(node.attributes.get("x", "0") or "0"), state.width)
+            y = self._length(parse_length(node.attributes.get("y", "0") or "0"), state.height)
+            move = np.array([[1.0, 0.0, x], [0.0, 1.0, y], [0.0, 0.0, 1.0]])
+            self._element(target, replace(state, matrix=state.matrix @ move))
+            return
+        # SVG 1.1, section 5.6: a symbol is an inner <svg> with the size given at the <use>.
+        self._elements += 1
+        inner = self._enter(target, self._sheet.style(target), state)
+        if inner is not None:
+            given = {k: v for k, v in node.attributes.items() if k in ("x", "y", "width", "height")}
+            names = ("width", "height") if target.tag == "svg" else ()
+            own = {k: v for k, v in target.attributes.items() if k in names}
+            self._children(target, self._inner_viewport(target, inner, {**own, **given}))
+
+    # ---- shapes
+
+    def _length(self, length: Length, whole: float) -> float:
+        self._paper_units |= length.absolute
+        value = length.resolve(whole)
+        if not math.isfinite(value):
+            raise SvgValueError("a length is not finite")
+        return value
+
+    def _shape(self, node: Node, state: _State) -> None:
+        properties = state.properties
+        if properties["visibility"].lower() in ("hidden", "collapse"):
+            self._left_out[f"<{node.tag}> left out: hidden"] += 1
+            return
+        stroke = self._paint(node, properties["stroke"], properties["color"])
+        fill = self._paint(node, properties["fill"], properties["color"])
+        stroke_width = self._length(parse_length(properties["stroke-width"]), 0.0)
+        opacity = 0.0
+        if stroke is not None and stroke_width != 0.0:
+            opacity = state.opacity * stroke.opacity * _opacity(properties["stroke-opacity"])
+            if opacity == 0.0:
+                self._left_out[f"<{node.tag}> stroke left out: fully transparent (no fold)"] += 1
+        filled = fill is not None and state.opacity * fill.opacity * _opacity(properties["fill-opacity"]) > 0.0
+        if opacity == 0.0 and not filled:
+            return
+        outlines = self._outlines.get(node)
+        if outlines is None:
+            diagonal = math.hypot(state.width, state.height) / math.sqrt(2.0)
+            wholes = {"x": state.width, "y": state.height, "": diagonal}
+            outlines = shape_subpaths(
+                node.tag,
+                node.attributes,
+                lambda length, direction: self._length(length, wholes[direction]),
+            )
+            # Percentages depend on the viewport, all else on the element alone.
+            if node.tag in ("path", "polyline", "polygon") or "%" not in "".join(node.attributes.values()):
+                self._outlines[node] = outlines
+        self._segments += sum(len(outline.segments) for outline in outlines)
+        if self._segments > MAX_POINTS:
+            raise PatternError(f"the drawing needs more than {MAX_POINTS:,} points")
+        if not outlines:
+            self._left_out[f"<{node.tag}> left out: it has no length"] += 1
+            return
+        with np.errstate(over="ignore", invalid="ignore"):
+            subpaths = tuple(outline.transformed(state.matrix) for outline in outlines)
+        segments = [segment for subpath in subpaths for segment in subpath.segments]
+        if not all((np.abs(segment.points) < MAX_COORDINATE).all() for segment in segments):
+            raise SvgValueError("its coordinates are not finite, or too large to be a drawing")
+        self._shapes.append(
+            Drawn(
+                str(node),
+                node.attributes.get("id", ""),
+                subpaths,
+                stroke if opacity > 0.0 else None,
+                filled,
+                opacity,
+                self._dashes(properties["stroke-dasharray"]),
+                state.classes,
+                state.names,
+            )
+        )
+
+    def _paint(self, node: Node, text: str, current: str) -> Colour | None:
+        try:
+            return parse_paint(text, current)
+        except SvgValueError as problem:
+            self._left_out[f"<{node.tag}> whose colour is not used: {problem}"] += 1
+            return UNKNOWN_COLOUR
+
+    def _dashes(self, text: str) -> tuple[float, ...]:
+        if text.strip().lower() in ("", "none"):
+            return ()
+        try:
+            lengths = [parse_length(part) for part in text.replace(",", " ").split(None, 32)[:32]]
+        except SvgValueError:
+            return ()
+        values = tuple(length.pixels for length in lengths)
+        # SVG 1.1, section 11.4: nothing but zeros, or anything negative, is a solid line.
+        return values if min(values) >= 0.0 and sum(values) > 0.0 else ()
+
+
+@dataclass(frozen=True)
+class _Viewport:
+    """The root's: size for percentages, ymin + ymax for the flip, and what a user unit is."""
+
+    width: float
+    height: float
+    middle: float | None
+    unit_mm: float | None
+    pixels_per_unit: float | None
+    stretch: float = 1.0  # of y against x, when preserveAspectRatio is none
+
+
+def _aspect(attributes: dict[str, str]) -> tuple[str, bool]:
+    words = attributes.get("preserveAspectRatio", "xMidYMid").split()
+    if words[:1] == ["defer"]:
+        words = words[1:]
+    return (words[0] if words else "xMidYMid"), "slice" in words[1:]
+
+
+def _opacity(text: str) -> float:
+    try:
+        length = parse_length(text)
+    except SvgValueError:
+        return 1.0
+    return min(max(length.resolve(1.0), 0.0), 1.0)

@@ -1,0 +1,183 @@
+"""Reading XML safely: bounded, no entities, no external references.
+
+A tree of our own is built straight from expat: the standard tree builders expand entities and cannot be told
+to stop at a depth or a count.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import IO, Any
+from xml.parsers import expat
+
+from ..errors import ReadError
+
+SVG_NAMESPACE = "http://www.w3.org/2000/svg"
+XLINK_NAMESPACE = "http://www.w3.org/1999/xlink"
+INKSCAPE_NAMESPACE = "http://www.inkscape.org/namespaces/inkscape"
+
+#: A drawing of this size is not a crease pattern; parsing it would take minutes and gigabytes.
+MAX_BYTES = 64 * 1024 * 1024
+#: All XML elements of a file, drawn or not (metadata, gradients, text).
+MAX_XML_ELEMENTS = 200_000
+#: Nesting of XML elements; real drawings stay below 30, and each level is a Python call while drawing.
+MAX_DEPTH = 100
+#: Class names of one element.
+MAX_CLASSES = 50
+
+
+@dataclass(eq=False)
+class Node:
+    """One XML element.
+
+    tag         local name; elements of foreign namespaces (editors' own data) have the tag ""
+    attributes  local names; ``href`` whether plain or xlink, ``inkscape:label`` for Inkscape's layer name
+    number      place in the file among elements of the same tag, from 1
+    text        character data, collected for <style> only
+    """
+
+    tag: str
+    attributes: dict[str, str]
+    parent: Node | None
+    number: int
+    children: list[Node] = field(default_factory=list)
+    text: str = ""
+
+    def __str__(self) -> str:
+        identity = self.attributes.get("id", "")[:40]
+        return f"<{self.tag}> {self.number}" + (f" (id {identity!r})" if identity else "")
+
+    @cached_property
+    def classes(self) -> tuple[str, ...]:
+        """Its class names; no more than a drawing could mean."""
+        return tuple(self.attributes.get("class", "").split(None, MAX_CLASSES)[:MAX_CLASSES])
+
+    def walk(self) -> Iterator[Node]:
+        """This node and everything below it, in the file's order. Not recursive."""
+        stack = [self]
+        while stack:
+            node = stack.pop()
+            yield node
+            stack.extend(reversed(node.children))
+
+
+def read_source(source: str | os.PathLike[str] | IO[Any]) -> tuple[bytes | str, str | None]:
+    """The text of a path or an open file, and the file's name if known. Raises ReadError."""
+    if isinstance(source, (str, os.PathLike)):
+        path = Path(source)
+        try:
+            status = path.stat()
+            if not stat.S_ISREG(status.st_mode):
+                raise ReadError("this is not a file", file=str(path))
+            if status.st_size > MAX_BYTES:
+                raise _too_large(status.st_size, str(path))
+            with open(path, "rb") as file:
+                data: bytes | str = file.read(MAX_BYTES + 1)
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            raise ReadError(f"the file cannot be read ({reason})", file=str(path)) from error
+        name: str | None = str(path)
+    else:
+        attribute = getattr(source, "name", None)
+        name = attribute if isinstance(attribute, str) else None
+        try:
+            data = source.read(MAX_BYTES + 1)
+        except (OSError, ValueError) as error:
+            raise ReadError(f"the file cannot be read ({error})", file=name) from error
+    if len(data) > MAX_BYTES:
+        raise _too_large(len(data), name)
+    return data, name
+
+
+def _too_large(size: int, file: str | None) -> ReadError:
+    return ReadError(
+        f"the file has {size / 2**20:.0f} MB, and drawings above {MAX_BYTES / 2**20:.0f} MB are not read",
+        file=file,
+    )
+
+
+def parse_svg_tree(data: bytes | str) -> Node:
+    """The root <svg> node. Raises ReadError: empty, not XML, not SVG, entities, too deep or too many."""
+    if not data.strip():
+        raise ReadError("the file is empty")
+    builder = _Builder()
+    parser = expat.ParserCreate(namespace_separator="}")
+    parser.StartElementHandler = builder.start
+    parser.EndElementHandler = builder.end
+    parser.CharacterDataHandler = builder.characters
+    parser.EntityDeclHandler = builder.entity
+    parser.buffer_text = True
+    try:
+        parser.Parse(data, True)
+    except expat.ExpatError as error:
+        raise ReadError(
+            f"this is not well-formed XML ({expat.ErrorString(error.code)} in line {error.lineno})"
+        ) from error
+    except (ValueError, LookupError, UnicodeError) as error:
+        raise ReadError(f"this is not well-formed XML ({error})") from error
+    root = builder.root
+    if root is None:
+        raise ReadError("this is not well-formed XML (no element in it)")
+    if root.tag != "svg":
+        raise ReadError(f"this is XML but not SVG: its root element is <{builder.root_name}>")
+    return root
+
+
+class _Builder:
+    """Expat's events -> nodes."""
+
+    def __init__(self) -> None:
+        self.root: Node | None = None
+        self.root_name = ""
+        self._open: list[Node] = []
+        self._elements = 0
+        self._numbers: dict[str, int] = {}
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        self._elements += 1
+        if self._elements > MAX_XML_ELEMENTS:
+            raise ReadError(f"the drawing has more than {MAX_XML_ELEMENTS:,} elements")
+        if len(self._open) >= MAX_DEPTH:
+            raise ReadError(f"the drawing's elements are nested more than {MAX_DEPTH} deep")
+        namespace, _, local = name.rpartition("}")
+        # A file without any namespace is read too: several small exporters forget it.
+        tag = local if namespace in ("", SVG_NAMESPACE) else ""
+        self._numbers[tag] = self._numbers.get(tag, 0) + 1
+        parent = self._open[-1] if self._open else None
+        node = Node(tag, _attributes(attributes), parent, self._numbers[tag])
+        if parent is None:
+            self.root, self.root_name = node, local
+        else:
+            parent.children.append(node)
+        self._open.append(node)
+
+    def end(self, _name: str) -> None:
+        self._open.pop()
+
+    def characters(self, text: str) -> None:
+        if self._open and self._open[-1].tag == "style":
+            self._open[-1].text += text
+
+    def entity(self, name: str, *_rest: object) -> None:
+        raise ReadError(f"the file declares an XML entity ({name!r}), which is not read; save it as plain SVG")
+
+
+def _attributes(attributes: dict[str, str]) -> dict[str, str]:
+    kept: dict[str, str] = {}
+    for name, value in attributes.items():
+        namespace, _, local = name.rpartition("}")
+        if namespace in ("", SVG_NAMESPACE):
+            kept[local] = value
+        elif namespace == XLINK_NAMESPACE and local == "href":
+            kept.setdefault("href", value)
+        elif namespace == INKSCAPE_NAMESPACE and local in ("label", "groupmode"):
+            kept["inkscape:" + local] = value
+    # SVG 2: a plain href wins over xlink:href, in whatever order they come.
+    if "href" in attributes:
+        kept["href"] = attributes["href"]
+    return kept
