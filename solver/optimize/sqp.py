@@ -1,0 +1,140 @@
+"""One step of Gauss-Newton SQP on the penalty function f + |φ|²/(2 eps) (method, section 3).
+
+(H + JᵀJ/eps + mu B + shift I) d = -∇f - Jᵀφ/eps, searched along d with Armijo decrease. Three things were
+measured to matter (docs/method.md):
+- no multipliers: near flat J loses rank, they keep growing, and the fold locks; eps is lowered in stages
+  instead, and ``projection_step`` ends it;
+- damping by the bending metric B, more when a step had to be shortened and less when it was full (Levenberg
+  and Marquardt): what limits a step is the change of curvature, whereas rigid turns of patches are harmless;
+- momentum (Nesterov), because folding creeps along curved valleys: each step starts from the extrapolation of
+  the last two shapes unless that is much worse.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..errors import NotPositiveDefiniteError
+from .assembly import Evaluation, Problem
+
+#: Armijo's constant (Nocedal and Wright, Numerical Optimization, Eq. 3.4).
+_ARMIJO = 1e-4
+#: Halvings before a step is given up.
+_MAX_BACKTRACKS = 20
+#: Added to the diagonal, energy per length²: rigid motions and unused corners have no stiffness of their own.
+_SHIFT = 1e-3
+#: Damping, in parts of the bending metric: bounds, and factors after a shortened and after a full step.
+_LEAST_DAMPING, _MOST_DAMPING, _RAISE, _LOWER = 1e-3, 1e3, 4.0, 0.5
+#: Momentum: n / (n + 3) in the n-th step (Nesterov's rule), at most this.
+_MOST_MOMENTUM = 0.95
+#: An extrapolation is taken when its merit is at most so many times the last; else momentum drops to a third.
+_WORSE = 1.5
+
+
+@dataclass(frozen=True, eq=False)
+class SqpState:
+    """x (V,3) net units, the shape before it; damping, parts of the bending metric; steps with momentum."""
+
+    x: FloatArray
+    previous: FloatArray
+    damping: float = _LEAST_DAMPING
+    momentum: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class StepReport:
+    """What one step did. ``merit`` is f + |φ|²/(2 eps) at its end."""
+
+    evaluation: Evaluation
+    merit: float
+    step_length: float
+    backtracks: int
+    largest_move: float
+    seconds: dict[str, float]
+
+
+def at_rest(x: FloatArray) -> SqpState:
+    """A start without momentum at x (V,3)."""
+    return SqpState(np.array(x), np.array(x))
+
+
+def sqp_step(problem: Problem, state: SqpState, eps: float) -> tuple[SqpState, StepReport]:
+    """One iteration.
+
+    eps: softness of the constraints, 1/energy. Raises NotPositiveDefiniteError when the system breaks.
+    """
+
+    def merit(evaluation: Evaluation) -> float:
+        return evaluation.objective + float(evaluation.constraint @ evaluation.constraint) / (2 * eps)
+
+    clock = [time.perf_counter()]
+    x, momentum = state.x, state.momentum
+    velocity = x - state.previous
+    if velocity.any():
+        momentum += 1
+        ahead = x + min(_MOST_MOMENTUM, momentum / (momentum + 3)) * velocity
+        if merit(problem.evaluate(ahead)) <= _WORSE * merit(problem.evaluate(x)):
+            x = ahead
+        else:
+            momentum //= 3
+    clock.append(time.perf_counter())
+    model = problem.linearize(x, 1.0 / eps, _SHIFT, state.damping)
+    gradient = model.gradient + problem.transposed(model.jacobians, model.evaluation.constraint / eps)
+    clock.append(time.perf_counter())
+    problem.system.factorize(model.values)
+    clock.append(time.perf_counter())
+    step = problem.system.solve(-gradient)
+    if not np.isfinite(step).all():
+        raise NotPositiveDefiniteError("the linear system gave a step that is not finite")
+    clock.append(time.perf_counter())
+    move = step.reshape(-1, 3)
+    slope = float(gradient @ step)
+    start = merit(model.evaluation)
+    length, backtracks, accepted = 1.0, 0, model.evaluation
+    while True:
+        trial = problem.evaluate(x + length * move)
+        if merit(trial) <= start + _ARMIJO * length * slope + 1e-12 * abs(start):
+            accepted = trial
+            break
+        if backtracks == _MAX_BACKTRACKS:
+            length = 0.0
+            break
+        length, backtracks = 0.5 * length, backtracks + 1
+    damping = state.damping * (_RAISE if length < 1.0 else _LOWER)
+    damping = min(max(damping, _LEAST_DAMPING), _MOST_DAMPING)
+    after = x + length * move
+    clock.append(time.perf_counter())
+    spent = np.diff(clock)
+    return SqpState(after, state.x, damping, momentum), StepReport(
+        accepted,
+        merit(accepted),
+        length,
+        backtracks,
+        float(np.abs(after - state.x).max(initial=0.0)),
+        dict(zip(("momentum", "assembly", "factor", "solve", "line search"), spent.tolist(), strict=True)),
+    )
+
+
+def projection_step(problem: Problem, x: FloatArray, eps: float) -> tuple[FloatArray, float]:
+    """Move x (V,3) towards exact constraints by the least objective energy; returns x and max |φ| there.
+
+    A Gauss-Newton step on |φ|² in the metric of the objective's Hessian, halved until |φ| falls: it changes
+    the shape as little as the stiff terms allow. The same x comes back when no length helps.
+    """
+    model = problem.linearize(x, 1.0 / eps, _SHIFT)
+    constraint = model.evaluation.constraint
+    problem.system.factorize(model.values)
+    step = problem.system.solve(-problem.transposed(model.jacobians, constraint / eps)).reshape(-1, 3)
+    start = float(constraint @ constraint)
+    length = 1.0
+    for _ in range(_MAX_BACKTRACKS):
+        trial = x + length * step
+        c = problem.evaluate(trial).constraint
+        if float(c @ c) < start:
+            return trial, float(np.abs(c).max(initial=0.0))
+        length *= 0.5
+    return x, float(np.abs(constraint).max(initial=0.0))
