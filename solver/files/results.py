@@ -1,0 +1,75 @@
+"""The files of a finished fold: folded.obj, folded.fold, report.json."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..arrays import FloatArray
+from ..errors import CurvefoldError
+from ..fold import FoldResult
+from .atomic import write_whole
+from .fold_format import fold_text
+from .obj import obj_text
+
+OBJ_NAME, FOLD_NAME, REPORT_NAME = "folded.obj", "folded.fold", "report.json"
+#: FOLD's frame units by millimetres a unit.
+_UNITS = {1.0: "mm", 10.0: "cm", 1000.0: "m", 25.4: "in", 0.001: "um"}
+
+
+def write_results(result: FoldResult, folder: str | Path) -> None:
+    """Write the three files, each whole or not at all; the report comes last and so says that all are there.
+
+    Raises CurvefoldError when the folder cannot be made or a file not be written.
+    """
+    folder = Path(folder)
+    surface = result.net.render_map
+    vertices = surface.apply(result.positions)
+    faces = surface.faces()
+    name = result.pattern.name or "folded"
+    texts = {
+        OBJ_NAME: obj_text(
+            vertices,
+            surface.uv,
+            [face.tolist() for face in faces],
+            surface.face_patch,
+            name,
+            f"folded by Curvefold: {result.detail}",
+        ),
+        FOLD_NAME: fold_text(
+            vertices,
+            surface.uv,
+            faces,
+            surface.crease_edges,
+            surface.crease_edge_crease,
+            crease_edge_angles(result),
+            _UNITS.get(result.pattern.unit_mm or 0.0, "unit"),
+            name,
+        ),
+        REPORT_NAME: json.dumps(result.report(), indent=1, allow_nan=False) + "\n",
+    }
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise CurvefoldError(f"the folder cannot be made ({error.strerror})", file=str(folder)) from None
+    for file, text in texts.items():
+        write_whole(folder / file, text)
+
+
+def crease_edge_angles(result: FoldResult) -> FloatArray:
+    """Signed fold angle (n,) in degrees at each shown crease edge: that of the nearest point of its chain."""
+    surface, m = result.net.render_map, result.measurement
+    middle = surface.uv[surface.crease_edges].mean(axis=1)
+    angles = np.full(len(middle), np.nan)
+    signed = m.fold_angle * m.fold_sign
+    chains = result.net.crease_points.chain
+    for chain in np.unique(surface.crease_edge_chain):
+        points = np.flatnonzero((chains == chain) & np.isfinite(signed))
+        edges = np.flatnonzero(surface.crease_edge_chain == chain)
+        if len(points):
+            _, nearest = cKDTree(m.crease_position[points]).query(middle[edges])
+            angles[edges] = signed[points[nearest]]
+    return angles
