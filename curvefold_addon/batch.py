@@ -1,0 +1,311 @@
+"""Many drawings: each in its own folder and its own process, what is finished is not done again."""
+
+import csv
+import hashlib
+import io
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from .bridge import contact_sheet
+from .whole_files import whole_file, write_text
+
+DRAWING_SUFFIXES = (".svg",)
+
+REPORT = "report.json"
+RESULTS = ("folded.obj", "folded.fold", REPORT)
+PICTURE = "picture.png"
+THUMBNAIL = "thumbnail.png"
+LOG = "log.txt"
+#: Says from what the results beside it were made. Written last.
+STAMP = "batch.json"
+STAMP_FORMAT = 1
+
+SUMMARY = "summary.csv"
+CONTACT_SHEET = "contact_sheet.png"
+
+#: Without --render, a small quick picture for the contact sheet.
+THUMBNAIL_OPTIONS = ("--size", "320x240", "--samples", "12")
+
+#: Exit codes of a drawing that was folded: its targets reached, or not all of them.
+FOLDED_CODES = (0, 1)
+
+#: What is said of a process that ended without results.
+CRASHED = 3
+
+#: The package of the whole extension.
+EXTENSION = __package__.rpartition(".")[0]
+
+
+class BatchError(Exception):
+    """The batch itself cannot run. ``str()`` is one sentence."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """One drawing and the folder of its results."""
+
+    drawing: Path
+    folder: Path
+    picture: str
+    options: tuple[str, ...]
+
+    def stamp(self) -> dict[str, Any]:
+        """What the results are made from."""
+        return {
+            "format": STAMP_FORMAT,
+            "drawing_sha256": _sha256(self.drawing),
+            "options": [_named_content(option) for option in self.options],
+            "picture": self.picture,
+        }
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How one drawing went."""
+
+    task: Task
+    exit_code: int
+    sentence: str
+    seconds: float
+    skipped: bool = False
+
+    @property
+    def word(self) -> str:
+        if self.exit_code == 0:
+            return "folded"
+        return "partly folded" if self.exit_code in FOLDED_CODES else "failed"
+
+
+def run(source: Path, out: Path, *, jobs: int, render: bool, options: list[str]) -> int:
+    """Folds all drawings; 0 when every one reached its targets, 1 otherwise. Raises BatchError."""
+    tasks = list(_tasks(find_drawings(source), out, render, options))
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BatchError(f"{out}: cannot be made: {error.strerror}") from error
+    outcomes: dict[Task, Outcome] = {}
+    crew = _Crew(jobs)
+    with ThreadPoolExecutor(jobs) as pool:
+        futures = [pool.submit(crew.work, task) for task in tasks]
+        try:
+            for future in as_completed(futures):
+                outcome = future.result()
+                outcomes[outcome.task] = outcome
+                _say(outcome, len(outcomes), len(tasks))
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            crew.stop()
+            raise
+    ordered = [outcomes[task] for task in tasks]
+    write_text(out / SUMMARY, summary(ordered))
+    with whole_file(out / CONTACT_SHEET) as partial:
+        contact_sheet.save(partial, [_tile(outcome) for outcome in ordered])
+    bad = [outcome for outcome in ordered if outcome.exit_code != 0]
+    print(f"{len(ordered) - len(bad)} of {len(ordered)} drawings folded; {out / SUMMARY}, {out / CONTACT_SHEET}")
+    return 1 if bad else 0
+
+
+def find_drawings(source: Path) -> list[Path]:
+    """The drawings in a folder, by name, or in a list, in its order."""
+    try:
+        if source.is_dir():
+            drawings = sorted(path for path in source.iterdir() if path.suffix.lower() in DRAWING_SUFFIXES)
+        elif source.suffix.lower() in DRAWING_SUFFIXES:
+            drawings = [source]
+        else:
+            lines = (line.strip() for line in source.read_text(encoding="utf-8").splitlines())
+            drawings = [source.parent / line for line in lines if line and not line.startswith("#")]
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is not text"
+        raise BatchError(f"{source}: cannot be read: {reason}") from error
+    if not drawings:
+        raise BatchError(f"{source}: holds no drawings ({', '.join(DRAWING_SUFFIXES)})")
+    return drawings
+
+
+def is_finished(task: Task) -> Outcome | None:
+    """The outcome of an earlier run, if it was made from the same drawing and options and is all there."""
+    try:
+        stamp = json.loads((task.folder / STAMP).read_text(encoding="utf-8"))
+        json.loads((task.folder / REPORT).read_text(encoding="utf-8"))
+        same = stamp["made_from"] == task.stamp() and stamp["report_sha256"] == _sha256(task.folder / REPORT)
+        if not same or not all((task.folder / name).is_file() for name in (*RESULTS, task.picture)):
+            return None
+        return Outcome(task, stamp["exit_code"], stamp["sentence"], stamp["seconds"], skipped=True)
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def summary(outcomes: list[Outcome]) -> str:
+    """The table: a row for each drawing, with every plain number of its report."""
+    reports = [_report_values(outcome) for outcome in outcomes]
+    columns = list(dict.fromkeys(key for report in reports for key in report))
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["drawing", "folder", "result", "exit_code", "seconds_in_all", "sentence", *columns])
+    for outcome, report in zip(outcomes, reports, strict=True):
+        task = outcome.task
+        row = [str(task.drawing), task.folder.name, outcome.word, outcome.exit_code, f"{outcome.seconds:.1f}"]
+        writer.writerow([*row, outcome.sentence, *(report.get(column, "") for column in columns)])
+    return text.getvalue()
+
+
+class _Crew:
+    """The processes of one batch."""
+
+    def __init__(self, jobs: int) -> None:
+        self._threads = max(1, (os.cpu_count() or 1) // jobs)
+        self._lock = threading.Lock()
+        self._running: set[subprocess.Popen[bytes]] = set()
+        self._stopped = False
+        # Asked here, in the main thread: bpy is not to be touched from the others.
+        self._command, self._environment = _worker_command()
+        # Every process would otherwise start as many threads as there are cores.
+        for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+            self._environment[name] = str(self._threads)
+
+    def work(self, task: Task) -> Outcome:
+        """Folds one drawing unless it is finished. Whatever goes wrong becomes an outcome."""
+        try:
+            return is_finished(task) or self._fold(task)
+        except OSError as error:
+            return Outcome(task, 2, f"{error.filename or task.drawing}: {error.strerror or error}", 0.0)
+
+    def stop(self) -> None:
+        with self._lock:
+            self._stopped = True
+            for process in self._running:
+                process.terminate()
+
+    def _fold(self, task: Task) -> Outcome:
+        start = time.monotonic()
+        task.folder.mkdir(parents=True, exist_ok=True)
+        # Whatever was here is from another drawing or other options.
+        for name in (STAMP, *RESULTS, PICTURE, THUMBNAIL):
+            (task.folder / name).unlink(missing_ok=True)
+        made_from = task.stamp()
+        picture = str(task.folder / task.picture)
+        command = [*self._command, "fold", str(task.drawing), "--out", str(task.folder), *task.options]
+        command += ["--render", picture, "--threads", str(self._threads)]
+        log = task.folder / LOG
+        with log.open("wb") as stream:
+            code = self._wait(command, stream)
+        seconds = time.monotonic() - start
+        if code in FOLDED_CODES and not all((task.folder / name).is_file() for name in (*RESULTS, task.picture)):
+            code = CRASHED  # Python itself ends with 1 on an error that nobody expected
+        if code not in FOLDED_CODES:
+            return Outcome(task, code, _last_words(log, code), seconds)
+        sentence = _sentence(task.folder / REPORT)
+        stamp = {
+            "made_from": made_from,
+            "report_sha256": _sha256(task.folder / REPORT),
+            "exit_code": code,
+            "sentence": sentence,
+            "seconds": seconds,
+        }
+        write_text(task.folder / STAMP, json.dumps(stamp, indent=2) + "\n")
+        return Outcome(task, code, sentence, seconds)
+
+    def _wait(self, command: list[str], stream: Any) -> int:
+        with self._lock:
+            if self._stopped:
+                return 2
+            process = subprocess.Popen(
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=stream,
+                stderr=subprocess.STDOUT,
+                env=self._environment,
+            )
+            self._running.add(process)
+        try:
+            return process.wait()
+        finally:
+            with self._lock:
+                self._running.discard(process)
+
+
+def _worker_command() -> tuple[list[str], dict[str, str]]:
+    """How to start this command line again, and with which environment."""
+    environment = dict(os.environ)
+    if bpy.app.binary_path:
+        return [bpy.app.binary_path, "--command", "curvefold"], environment
+    # In the bpy module there is no program; sys.executable is this Python.
+    worker = Path(__file__).with_name("module_worker.py")
+    user_folder = bpy.utils.resource_path("USER")
+    return [sys.executable, "-P", str(worker), user_folder, EXTENSION], environment
+
+
+def _tasks(drawings: list[Path], out: Path, render: bool, options: list[str]) -> Iterator[Task]:
+    used: set[str] = set()
+    for drawing in drawings:
+        name, number = drawing.stem, 1
+        # Case does not tell folders apart everywhere.
+        while name.lower() in used:
+            number += 1
+            name = f"{drawing.stem}-{number}"
+        used.add(name.lower())
+        picture = PICTURE if render else THUMBNAIL
+        extra = () if render else THUMBNAIL_OPTIONS
+        yield Task(drawing.absolute(), (out / name).absolute(), picture, (*options, *extra))
+
+
+def _named_content(option: str) -> str:
+    """An option, and the content of the file it names, if it names one: a change of either is a change."""
+    path = Path(option.partition("=")[2] or option)
+    try:
+        return f"{option} sha256:{_sha256(path)}" if path.is_file() else option
+    except OSError:
+        return option
+
+
+def _sha256(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _sentence(report: Path) -> str:
+    value = json.loads(report.read_text(encoding="utf-8")).get("sentence", "")
+    return str(value)
+
+
+def _last_words(log: Path, code: int) -> str:
+    lines = [line.strip() for line in log.read_text(encoding="utf-8", errors="replace").splitlines()]
+    last = next((line for line in reversed(lines) if line), "")
+    return last or f"the process ended with {code} and said nothing"
+
+
+def _report_values(outcome: Outcome) -> dict[str, Any]:
+    if outcome.exit_code not in FOLDED_CODES:
+        return {}
+    report = json.loads((outcome.task.folder / REPORT).read_text(encoding="utf-8"))
+    return dict(_flat(report))
+
+
+def _flat(values: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in values.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{key}.")
+        elif isinstance(value, bool | int | float):
+            yield prefix + key, value
+
+
+def _tile(outcome: Outcome) -> contact_sheet.Tile:
+    task = outcome.task
+    picture = task.folder / task.picture if outcome.exit_code in FOLDED_CODES else None
+    return contact_sheet.Tile(task.folder.name, outcome.word if outcome.exit_code else "", picture)
+
+
+def _say(outcome: Outcome, done: int, total: int) -> None:
+    how = "finished before" if outcome.skipped else f"{outcome.seconds:.1f} s"
+    print(f"[{done}/{total}] {outcome.task.folder.name}: {outcome.word} ({how}). {outcome.sentence}", flush=True)

@@ -1,0 +1,122 @@
+"""A folded sheet as a Blender mesh: quads and n-gons, the flat sheet as UVs, creases marked."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from ...solver import FoldResult
+
+#: The UV map that holds the flat sheet in metres.
+FLAT_UV = "flat"
+#: Face attribute: the patch (a piece of the sheet between creases) a face belongs to.
+PATCH = "patch"
+#: Edge attribute: the crease an edge lies on, NO_CREASE elsewhere.
+CREASE = "crease"
+#: Edge attribute: whether an edge lies on a crease.
+CREASE_EDGE = "crease_edge"
+NO_CREASE = -1
+
+#: A drawing that does not say how large it is, is taken to be in millimetres.
+DEFAULT_UNIT_MM = 1.0
+
+
+def metres_per_unit(unit_mm: float | None) -> float:
+    """Metres in one drawing unit."""
+    return (DEFAULT_UNIT_MM if unit_mm is None else unit_mm) / 1000.0
+
+
+def add_paper(result: FoldResult, collection: Any, material: Any) -> Any:
+    """A new object of the folded sheet in ``collection``, in true scale."""
+    mesh = build_mesh(result)
+    if material is not None:
+        mesh.materials.append(material)
+    paper = bpy.data.objects.new(mesh.name, mesh)
+    collection.objects.link(paper)
+    return paper
+
+
+def build_mesh(result: FoldResult) -> Any:
+    """A new mesh datablock of the folded sheet, in metres."""
+    surface = result.net.render_map
+    scale = metres_per_unit(result.pattern.unit_mm)
+    mesh = bpy.data.meshes.new(result.pattern.name or "Paper")
+    positions = surface.apply(result.positions) * scale
+    corners = np.asarray(surface.face_vertices, dtype=np.int32)
+    starts = np.asarray(surface.face_start[:-1], dtype=np.int32)
+
+    mesh.vertices.add(len(positions))
+    mesh.loops.add(len(corners))
+    mesh.polygons.add(len(starts))
+    mesh.polygons.foreach_set("loop_start", starts)
+    mesh.loops.foreach_set("vertex_index", corners)
+    mesh.update(calc_edges=True)
+    write_positions(mesh, positions)
+
+    flat = mesh.uv_layers.new(name=FLAT_UV)
+    flat.uv.foreach_set("vector", _single(surface.uv[corners] * scale))
+    patch = mesh.attributes.new(PATCH, "INT", "FACE")
+    patch.data.foreach_set("value", np.asarray(surface.face_patch, dtype=np.int32))
+    _mark_creases(mesh, surface.crease_edges, surface.crease_edge_crease)
+    mesh.update()
+    return mesh
+
+
+def write_positions(mesh: Any, positions: NDArray[np.float64]) -> None:
+    """New vertex positions (R,3), metres."""
+    mesh.attributes["position"].data.foreach_set("vector", _single(positions))
+    if len(mesh.vertices):
+        # foreach_set on the attribute leaves the bounding box stale in 4.2 to 5.0; one plain write does not.
+        mesh.vertices[0].co = mesh.vertices[0].co
+    mesh.update()
+
+
+def world_positions(paper: Any) -> NDArray[np.float64]:
+    """(R,3) vertex positions of an object in the world."""
+    mesh = paper.data
+    local = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", local)
+    matrix = np.array(paper.matrix_world)
+    world: NDArray[np.float64] = local.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+    return world
+
+
+def _mark_creases(mesh: Any, crease_edges: NDArray[np.int64], creases: NDArray[np.int64]) -> None:
+    count = len(mesh.edges)
+    ends = np.empty(2 * count, dtype=np.int32)
+    mesh.edges.foreach_get("vertices", ends)
+    keys = _edge_keys(ends.reshape(-1, 2), len(mesh.vertices))
+    wanted = _edge_keys(np.asarray(crease_edges).reshape(-1, 2), len(mesh.vertices))
+    order = np.argsort(keys)
+    slot = np.searchsorted(keys, wanted, sorter=order)
+    found = slot < count
+    found[found] = keys[order[slot[found]]] == wanted[found]
+    if not found.all():
+        raise ValueError(f"{np.count_nonzero(~found)} crease edges of the surface are not edges of its faces")
+    edges = order[slot]
+
+    number = np.full(count, NO_CREASE, dtype=np.int32)
+    number[edges] = creases
+    on_crease = np.zeros(count, dtype=bool)
+    on_crease[edges] = True
+    mesh.attributes.new(CREASE, "INT", "EDGE").data.foreach_set("value", number)
+    # Everything is shaded smooth but the creases. Blender reads "sharp_edge"; the other one is ours to keep.
+    for name in (CREASE_EDGE, "sharp_edge"):
+        attribute = mesh.attributes.get(name) or mesh.attributes.new(name, "BOOLEAN", "EDGE")
+        attribute.data.foreach_set("value", on_crease)
+
+
+def _edge_keys(ends: NDArray[Any], vertices: int) -> NDArray[np.int64]:
+    """One number for each undirected edge."""
+    ordered = np.sort(ends.astype(np.int64), axis=1)
+    keys: NDArray[np.int64] = ordered[:, 0] * vertices + ordered[:, 1]
+    return keys
+
+
+def _single(values: NDArray[np.float64]) -> NDArray[np.float32]:
+    """Flat single precision, as Blender's arrays want it."""
+    return np.ascontiguousarray(values, dtype=np.float32).ravel()

@@ -1,0 +1,158 @@
+"""``blender --command curvefold fold …`` and ``… batch …``.
+
+With the bpy module instead of a Blender program, ``python -m curvefold_addon fold …`` in a checkout
+calls the same ``main``.
+"""
+
+import argparse
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import bpy
+
+from .. import solver
+from ..solver import command_line
+from . import batch, paper_material, scene
+from .bridge import mesh, state
+from .whole_files import OutputError, check_writable, whole_file
+
+COMMAND = "curvefold"
+EXIT_BAD_INPUT = 2
+
+_command = None
+
+
+def main(argv: list[str]) -> int:
+    """Runs ``fold …`` or ``batch …`` and returns the exit code."""
+    try:
+        arguments, rest = _parser().parse_known_args(argv)
+        if rest and arguments.run is not run_batch:
+            _parser().parse_args(argv)  # says which argument is unknown
+        return int(arguments.run(arguments, rest))
+    except SystemExit as stop:  # argparse has said why
+        return stop.code if isinstance(stop.code, int) else EXIT_BAD_INPUT
+    except (OutputError, batch.BatchError, solver.CurvefoldError) as error:
+        print(f"{COMMAND}: {error}", file=sys.stderr)
+        return EXIT_BAD_INPUT
+
+
+def fold_parser(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
+    """The arguments of ``fold``: the solver's own, and what Blender adds to them."""
+    parser.add_argument("pattern", metavar="PATTERN", help="the drawing to fold (.svg)")
+    parser.add_argument("--out", required=True, metavar="DIR", help="where the results go")
+    command_line.add_fold_arguments(parser)
+    parser.add_argument("--render", metavar="PNG", type=_path_ending(".png"), help="render a picture in Cycles")
+    parser.add_argument("--blend", metavar="FILE", type=_path_ending(".blend"), help="save the scene")
+    parser.add_argument("--size", metavar="WxH", type=_size, default=(960, 720), help="pixels (960x720)")
+    parser.add_argument("--samples", type=_positive, default=48, help="Cycles samples per pixel (48)")
+    parser.add_argument("--threads", type=_not_negative, default=0, help="render threads (0: every core)")
+    return parser
+
+
+def run_fold(arguments: argparse.Namespace, rest: list[str]) -> int:
+    """Folds one drawing, then renders and saves what was asked for."""
+
+    def on_result(result: solver.FoldResult, folder: object) -> None:
+        if arguments.render or arguments.blend:
+            _show(result, arguments)
+
+    # Before the folding, which may take long.
+    for path in (arguments.render, arguments.blend):
+        if path is not None:
+            check_writable(path)
+    return int(command_line.run_fold(arguments, sys.stderr, on_result=on_result))
+
+
+def run_batch(arguments: argparse.Namespace, rest: list[str]) -> int:
+    """Folds every drawing of a folder or a list."""
+    # What batch itself does not know belongs to fold; a mistake must not come up once for every drawing.
+    fold_parser(argparse.ArgumentParser(prog=f"{COMMAND} batch")).parse_args(
+        ["drawing.svg", "--out", arguments.out, *rest]
+    )
+    return batch.run(
+        Path(arguments.source),
+        Path(arguments.out),
+        jobs=arguments.jobs,
+        render=arguments.render,
+        options=rest,
+    )
+
+
+def _show(result: solver.FoldResult, arguments: argparse.Namespace) -> None:
+    # An empty file, whatever the user's start-up file holds; the extension stays enabled.
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    paper = mesh.add_paper(result, bpy.context.scene.collection, paper_material.paper_material())
+    state.store(paper.data, result)
+    width, height = arguments.size
+    scene.set_up(paper, scene.PictureSettings(width, height, arguments.samples, arguments.threads))
+    if arguments.render:
+        with whole_file(arguments.render) as partial:
+            scene.render(str(partial))
+    if arguments.blend:
+        with whole_file(arguments.blend) as partial:
+            bpy.ops.wm.save_as_mainfile(
+                filepath=str(partial), check_existing=False, copy=True, compress=True, relative_remap=False
+            )
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog=COMMAND, description="Folds paper along curves.", allow_abbrev=False)
+    commands = parser.add_subparsers(title="commands", required=True, metavar="fold | batch")
+    fold = commands.add_parser(
+        "fold", help="fold one drawing", description="Folds one drawing.", allow_abbrev=False
+    )
+    fold_parser(fold).set_defaults(run=run_fold)
+    many = commands.add_parser(
+        "batch",
+        help="fold every drawing of a folder or a list",
+        description="Folds every drawing of a folder or a list, each in its own folder. "
+        "Other options go to fold. What is finished already is skipped.",
+        allow_abbrev=False,
+    )
+    many.add_argument("source", metavar="FOLDER|LIST", help="a folder of drawings, or a text file with one a line")
+    many.add_argument("--out", required=True, metavar="DIR", help="where the folders of results go")
+    many.add_argument("--jobs", type=_positive, default=1, help="drawings folded at the same time (1)")
+    many.add_argument("--render", action="store_true", help="render every fold")
+    many.set_defaults(run=run_batch)
+    return parser
+
+
+def _path_ending(suffix: str) -> Callable[[str], Path]:
+    def path(text: str) -> Path:
+        if Path(text).suffix.lower() != suffix:
+            raise argparse.ArgumentTypeError(f"{text!r} does not end in {suffix}")
+        # Blender has its own idea of what a relative path is relative to.
+        return Path(text).absolute()
+
+    return path
+
+
+def _positive(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of at least 1")
+    return int(text)
+
+
+def _not_negative(text: str) -> int:
+    return 0 if text == "0" else _positive(text)
+
+
+def _size(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"([1-9]\d{0,4})x([1-9]\d{0,4})", text)
+    if match is None:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size such as 960x720")
+    return int(match[1]), int(match[2])
+
+
+def register() -> None:
+    global _command
+    _command = bpy.utils.register_cli_command(COMMAND, main)
+
+
+def unregister() -> None:
+    global _command
+    if _command is not None:
+        bpy.utils.unregister_cli_command(_command)
+    _command = None

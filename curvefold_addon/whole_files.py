@@ -1,0 +1,48 @@
+"""Files that appear whole or not at all."""
+
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+
+class OutputError(Exception):
+    """A file cannot be written. ``str()`` is one sentence that names it."""
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """A temporary path beside ``path`` to write to; moved there at the end, removed when something fails."""
+    partial = path.with_name(f".{secrets.token_hex(8)}.part{path.suffix}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        yield partial
+        if not partial.is_file():
+            raise OutputError(f"{path}: Blender wrote nothing")
+        partial.replace(path)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror or error}") from error
+    except RuntimeError as error:  # Blender's own operators
+        reason = " ".join(str(error).removeprefix("Error: ").split())
+        raise OutputError(f"{path}: cannot be written: {reason}") from error
+    finally:
+        with suppress(OSError):
+            partial.unlink()
+
+
+def check_writable(path: Path) -> None:
+    """Raises OutputError when it is certain already that ``path`` cannot be written."""
+    if path.is_dir():
+        raise OutputError(f"{path}: cannot be written: it is a folder")
+    folder = path.parent
+    while not folder.exists() and folder != folder.parent:
+        folder = folder.parent
+    if not folder.is_dir() or not os.access(folder, os.W_OK):
+        raise OutputError(f"{path}: cannot be written: {folder} is not a folder to write to")
+
+
+def write_text(path: Path, text: str) -> None:
+    """A whole text file."""
+    with whole_file(path) as partial:
+        partial.write_text(text, encoding="utf-8")

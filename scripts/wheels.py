@@ -1,0 +1,131 @@
+"""Fetches the wheels that the extension bundles and writes their list into the manifest.
+
+    python scripts/wheels.py            fetch what is missing, copy into ./wheels, write the list
+    python scripts/wheels.py --check    only say whether the manifest lists what it should
+
+The wheels are unmodified files from the package index, taken by pip, for every platform and Python that
+Blender has; Blender picks the right one. They are cached in ${XDG_CACHE_HOME:-~/.cache}/curvefold/bundled.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+MANIFEST = ROOT / "blender_manifest.toml"
+REQUIREMENTS = ROOT / "requirements" / "bundled.txt"
+FOLDER = ROOT / "wheels"
+
+PYTHONS = ("311", "313")
+
+#: For each of Blender's platforms, the wheel platforms that run there, as pip names them. The macOS ones
+#: stop at the version where scipy still brings its own linear algebra.
+PLATFORMS = {
+    "linux-x64": ("manylinux_2_28_x86_64", "manylinux_2_17_x86_64", "manylinux2014_x86_64"),
+    "macos-arm64": ("macosx_12_0_arm64", "macosx_11_0_arm64"),
+    "macos-x64": ("macosx_10_13_x86_64", "macosx_10_9_x86_64"),
+    "windows-x64": ("win_amd64",),
+}
+
+LIST = re.compile(r"^wheels = \[.*?^\]$", re.MULTILINE | re.DOTALL)
+
+
+def cache_folder() -> Path:
+    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    return Path(base) / "curvefold" / "bundled"
+
+
+def requirements() -> list[tuple[str, str]]:
+    """(name, version) of each bundled library."""
+    lines = (line.split("#")[0].strip() for line in REQUIREMENTS.read_text(encoding="utf-8").splitlines())
+    pairs = []
+    for line in filter(None, lines):
+        name, version = line.split("==")
+        pairs.append((name, version))
+    return pairs
+
+
+def wanted() -> Iterator[tuple[str, str, str, str]]:
+    """(name, version, python, platform) of every wheel; a pure one comes up for each and is found again."""
+    for name, version in requirements():
+        for python in PYTHONS:
+            for platform in PLATFORMS:
+                yield name, version, python, platform
+
+
+def find(name: str, version: str, python: str, platform: str) -> Path | None:
+    """The cached wheel for this Python and platform, if it is there."""
+    for path in sorted(cache_folder().glob(f"{name}-{version}-*.whl")):
+        pythons, abi, tags = path.stem.split("-")[2:]
+        if abi == "none" and tags == "any":
+            return path
+        if pythons == f"cp{python}" and any(tag in PLATFORMS[platform] for tag in tags.split(".")):
+            return path
+    return None
+
+
+def fetch(name: str, version: str, python: str, platform: str) -> Path:
+    """Downloads one wheel into the cache."""
+    command = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
+    command += ["--only-binary=:all:", "--implementation", "cp", "--python-version", python]
+    for tag in PLATFORMS[platform]:
+        command += ["--platform", tag]
+    # In a folder of its own first: an interrupted download must not look like a wheel.
+    partial = cache_folder() / "partial"
+    shutil.rmtree(partial, ignore_errors=True)
+    partial.mkdir(parents=True)
+    print(f"fetching {name} {version} for Python {python[0]}.{python[1:]} on {platform}", flush=True)
+    subprocess.run([*command, "--dest", str(partial), f"{name}=={version}"], check=True)
+    for path in partial.glob("*.whl"):
+        path.replace(cache_folder() / path.name)
+    shutil.rmtree(partial)
+    found = find(name, version, python, platform)
+    if found is None:
+        raise SystemExit(f"no wheel of {name} {version} for Python {python} on {platform}")
+    return found
+
+
+def manifest_list(names: list[str]) -> str:
+    return "\n".join(["wheels = [", *(f'  "./wheels/{name}",' for name in names), "]"])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument(
+        "--check", action="store_true", help="change nothing; exit 1 if the manifest is out of date"
+    )
+    arguments = parser.parse_args()
+
+    wheels = {}
+    for want in wanted():
+        path = find(*want) or fetch(*want)
+        wheels[path.name] = path
+
+    text = MANIFEST.read_text(encoding="utf-8")
+    new = LIST.sub(lambda _: manifest_list(sorted(wheels)), text, count=1)
+    if arguments.check:
+        if new != text:
+            raise SystemExit("the manifest's list of wheels is out of date: run scripts/wheels.py")
+        return
+    FOLDER.mkdir(exist_ok=True)
+    for stale in FOLDER.glob("*.whl"):
+        if stale.name not in wheels:
+            stale.unlink()
+    for name, path in wheels.items():
+        target = FOLDER / name
+        if not target.exists() or target.stat().st_size != path.stat().st_size:
+            shutil.copyfile(path, target)
+    if new != text:
+        MANIFEST.write_text(new, encoding="utf-8")
+    print(f"{len(wheels)} wheels in {FOLDER.relative_to(ROOT)}/")
+
+
+if __name__ == "__main__":
+    main()
