@@ -97,9 +97,11 @@ def _assemble(
     points = find_crease_points(arrangement, over, topology, grid)
     polygons = _patch_polygons(arrangement, over, frame)
     notes = list(arrangement.notes) + list(grid.notes)
-    for chain in over.lost_chains:
-        label = pattern.crease_label(int(chain_crease[chain]))
-        notes.append(f"a piece of {label} is smaller than a cell and was left out; use a finer resolution")
+    lost = sorted({int(chain_crease[chain]) for chain in over.lost_chains})
+    if lost:
+        labels = ", ".join(pattern.crease_label(k) for k in lost[:4])
+        more = f" and {len(lost) - 4} more" if len(lost) > 4 else ""
+        notes.append(f"pieces smaller than a cell were left out: {labels}{more}; a finer resolution keeps them")
     if len(points.position) == 0:
         raise NetError("no crease crosses the grid: use a finer resolution", element="creases")
     # Mean grid edge 1, whatever the asked cell was: the weights of the terms are meant for that scale.

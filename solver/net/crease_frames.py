@@ -67,8 +67,8 @@ def crease_frames(net: PiecewiseDog) -> CreaseFrames:
         chosen.append(k)
         rows.append([row for side in sides if side is not None for row in side])
     index = np.array(chosen, dtype=np.int64)
-    matrices = [_matrix([row[m] for row in rows], len(net.flat)) for m in range(4)]
-    return CreaseFrames(index, *matrices, tangent=points.tangent[index])
+    lx, ly, rx, ry = (_matrix([row[m] for row in rows], len(net.flat)) for m in range(4))
+    return CreaseFrames(index, lx, ly, rx, ry, points.tangent[index])
 
 
 _Row = dict[int, float]

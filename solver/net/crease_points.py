@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 import shapely
@@ -274,13 +274,12 @@ class _Builder:
             frozen_array(column, dtype, shape, "crease points")
             for column, (dtype, shape) in zip(columns, shapes, strict=True)
         ]
-        return CreasePoints(
-            *arrays,
-            carrier=frozen_array(self.carrier, int, (None,), "carrier"),
-            fold_vertices=frozen_array([v for v, _, _ in self.fold], int, (None, 8), "fold_vertices"),
-            fold_weights=frozen_array([w for _, w, _ in self.fold], float, (None, 3), "fold_weights"),
-            fold_neighbours=frozen_array([n for _, _, n in self.fold], int, (None, 2), "fold_neighbours"),
-        )
+        names = [field.name for field in fields(CreasePoints)]
+        arrays.append(frozen_array(self.carrier, int, (None,), "carrier"))
+        arrays.append(frozen_array([v for v, _, _ in self.fold], int, (None, 8), "fold_vertices"))
+        arrays.append(frozen_array([w for _, w, _ in self.fold], float, (None, 3), "fold_weights"))
+        arrays.append(frozen_array([n for _, _, n in self.fold], int, (None, 2), "fold_neighbours"))
+        return CreasePoints(**dict(zip(names, arrays, strict=True)))
 
 
 def _line_angle(u: FloatArray, v: FloatArray) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from scipy.sparse import csr_matrix
-from shapely import LineString
+from shapely import LineString, Polygon
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from .net_points import NodeCopies
@@ -60,13 +60,10 @@ def build_render_map(
     weights.eliminate_zeros()
     starts, loops, patches = [0], [], []
     for f, loop in enumerate(np.split(over.loop_nodes, over.loop_start[1:-1])):
-        loop = number[loop]
-        loop = loop[loop >= 0]
-        if len(loop) < 3:
-            continue
-        loops.append(loop)
-        starts.append(starts[-1] + len(loop))
-        patches.append(over.patch[f])
+        for part in _simple_loops(over.points, loop[number[loop] >= 0]):
+            loops.append(number[part])
+            starts.append(starts[-1] + len(part))
+            patches.append(over.patch[f])
     edges, chains = _crease_edges(over, number)
     return RenderMap(
         weights,
@@ -78,6 +75,24 @@ def build_render_map(
         chain_crease[chains],
         chains,
     )
+
+
+def _simple_loops(points: FloatArray, loop: IntArray) -> list[IntArray]:
+    """The outline itself, or triangles where it touches itself (around a smaller face that hangs on a node)."""
+    if len(loop) < 3:
+        return []
+    if len(np.unique(loop)) == len(loop):
+        return [loop]
+    nodes = np.unique(loop)
+    place = {tuple(points[n]): n for n in nodes.tolist()}
+    region = shapely.make_valid(Polygon(points[loop]))
+    triangles = []
+    for polygon in shapely.get_parts(region):
+        if polygon.geom_type == "Polygon":
+            for triangle in shapely.get_parts(shapely.constrained_delaunay_triangles(polygon)):
+                corners = shapely.get_coordinates(shapely.orient_polygons(triangle))[:3]
+                triangles.append(np.array([place[tuple(corner)] for corner in corners]))
+    return triangles
 
 
 def _plain(over: Overlay) -> BoolArray:

@@ -224,6 +224,7 @@ def _snap_ends(
             nearest = line.interpolate(line.project(Point(place)))
             target[n] = nearest.x, nearest.y
             moved[n] = True
+    joined: list[str] = []
     for n, (k, side, place) in enumerate(ends):
         gap = float(np.hypot(*(target[n] - place)))
         if not moved[n] or gap == 0.0:
@@ -231,8 +232,16 @@ def _snap_ends(
         row = result[k]
         result[k] = np.vstack([target[n][None], row]) if side == 0 else np.vstack([row, target[n][None]])
         if gap > 1e-3 * tolerance:
-            notes.append(f"an end of {labels[parts[k][1]]} missed by a little and was joined")
+            joined.append(labels[parts[k][1]])
+    if joined:
+        notes.append(f"ends that missed by a little were joined: {_listed(joined)}")
     return [(drop_repeats(points), crease) for points, (_, crease) in zip(result, parts, strict=True)]
+
+
+def _listed(labels: list[str]) -> str:
+    """The different labels, the first few by name."""
+    names = list(dict.fromkeys(labels))
+    return ", ".join(names[:4]) + (f" and {len(names) - 4} more" if len(names) > 4 else "")
 
 
 def _far_part(points: FloatArray, side: int, distance: float) -> LineString | None:
@@ -398,7 +407,7 @@ def _drop_slivers(
             half = LineString(rim[: len(rim) // 2 + 1])
             drop &= shapely.distance(shapely.points(middle), half) < 1e-6 * tolerance
         x, y = locate(shapely.get_coordinates(face.representative_point()))[0]
-        notes.append(f"{labels[loser]} runs along another line near ({x:.6g}, {y:.6g}): merged with it")
+        notes.append(f"{labels[loser]} runs along another line near ({x:.4g}, {y:.4g}) and was merged with it")
         segments, owner = segments[~drop], owner[~drop]
     return segments, owner
 

@@ -1,0 +1,102 @@
+"""The command line, shared by ``python -m solver`` and by Blender's ``--command curvefold``."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TextIO
+
+from .description import FoldDescription, read_handles
+from .errors import CurvefoldError
+from .files.results import write_results
+from .fold import FoldResult, fold, in_words
+from .folding import SqpReport
+from .pattern.reading import read_pattern
+
+#: Exit codes: everything asked was reached; folded, but not all that was asked; the input cannot be used.
+REACHED, NOT_REACHED, BAD_INPUT = 0, 1, 2
+#: Seconds between two lines of progress.
+_PROGRESS_SECONDS = 1.0
+
+OnResult = Callable[[FoldResult, Path], None]
+
+
+def add_fold_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of ``fold``, without the drawing's and the output's own."""
+    default = FoldDescription()
+    parser.add_argument(
+        "--resolution", type=int, default=default.resolution, metavar="N",
+        help="quads along the sheet's longer side (default %(default)s)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--handles", metavar="FILE.json",
+        help='handles: [{"at": [x, y], "target": [X, Y, Z]}, …] in the drawing\'s units',
+    )  # fmt: skip
+    parser.add_argument(
+        "--angle", type=float, default=None, metavar="DEG",
+        help="fold every crease to this angle (default 60 without handles, no drive with them)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--assignments", choices=("free", "bind"), default=default.assignments,
+        help="whether the drawing's mountains and valleys bind the fold (default %(default)s)",
+    )  # fmt: skip
+
+
+def description_of(args: argparse.Namespace) -> FoldDescription:
+    """What the arguments ask for. Raises CurvefoldError on a bad handle file or number."""
+    handles = read_handles(args.handles) if args.handles else ()
+    angle = args.angle if args.angle is not None or handles else FoldDescription().angle
+    return FoldDescription(resolution=args.resolution, angle=angle, handles=handles, assignments=args.assignments)
+
+
+def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | None = None) -> int:
+    """Read, fold, write; progress and summary to ``stream``. Returns the exit code, raises nothing of ours.
+
+    args: pattern, out, and what ``add_fold_arguments`` added. on_result(result, folder) may write more.
+    """
+    try:
+        description = description_of(args)
+        pattern = read_pattern(args.pattern)
+        try:
+            result = fold(pattern, description, _progress(stream))
+        except CurvefoldError as error:
+            source = args.handles if "handle" in (error.where.element or "") and args.handles else args.pattern
+            raise error.in_file(str(source)) if error.where.file is None else error from None
+        folder = Path(args.out)
+        write_results(result, folder)
+        if on_result is not None:
+            on_result(result, folder)
+    except CurvefoldError as error:
+        print(in_words(error), file=stream)
+        return BAD_INPUT
+    for note in (*pattern.notes, *result.net.notes):
+        print(f"note: {note}", file=stream)
+    print(result.summary(), file=stream)
+    return REACHED if result.status.ok else NOT_REACHED
+
+
+def _progress(stream: TextIO) -> Callable[[int, SqpReport], None]:
+    last = [time.monotonic()]
+
+    def show(iterations: int, report: SqpReport) -> None:
+        now = time.monotonic()
+        if now - last[0] < _PROGRESS_SECONDS:
+            return
+        last[0] = now
+        asked = "" if report.asked_angle is None else f", angle asked {report.asked_angle:.0f}°"
+        print(f"{iterations} iterations{asked}: {report.status.sentence}", file=stream, flush=True)
+
+    return show
+
+
+def main(argv: list[str] | None, stream: TextIO) -> int:
+    """``python -m solver``: without Blender."""
+    parser = argparse.ArgumentParser(prog="python -m solver", description="Fold paper along curves.")
+    commands = parser.add_subparsers(dest="command", required=True)
+    command = commands.add_parser("fold", help="fold a drawing and write OBJ, FOLD and a report")
+    command.add_argument("pattern", metavar="PATTERN.svg")
+    command.add_argument("--out", required=True, metavar="DIR", help="folder for the results")
+    add_fold_arguments(command)
+    return run_fold(parser.parse_args(argv), stream)

@@ -1,0 +1,142 @@
+"""All that a fold is told, as data: it can be written to a file and read back."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+from .errors import DescriptionError, HandleError
+
+#: Version of the JSON written by ``FoldDescription.to_json``.
+FORMAT_VERSION = 1
+#: Handle files larger than this are refused before they are parsed, bytes.
+_MAX_BYTES = 16 * 1024 * 1024
+
+
+@dataclass(frozen=True)
+class Handle:
+    """A point of the sheet and its target. at (x, y) on the flat sheet, target (X, Y, Z); drawing units.
+
+    Raises HandleError when a number is not finite.
+    """
+
+    at: tuple[float, float]
+    target: tuple[float, float, float]
+
+    def __post_init__(self) -> None:
+        for name, values, count in (("at", self.at, 2), ("target", self.target, 3)):
+            try:
+                numbers = tuple(float(v) for v in values)
+            except (TypeError, ValueError):
+                raise HandleError(f"{name!r} must be {count} numbers", element="handle") from None
+            if len(numbers) != count or not all(math.isfinite(v) for v in numbers):
+                raise HandleError(f"{name!r} must be {count} finite numbers", element="handle")
+            object.__setattr__(self, name, numbers)
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Weights of the terms in net units (paper, section 6.2; the fold condition: method, section 4).
+
+    A weight of 0 leaves a term out.
+    """
+
+    bending: float = 1.0
+    isometry: float = 20000.0
+    continuity: float = 1e4
+    handles: float = 5.0
+    fold_angle: float = 100.0
+    fold_condition: float = 1.0
+
+    def __post_init__(self) -> None:
+        for entry in fields(self):
+            value = getattr(self, entry.name)
+            if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0):
+                raise DescriptionError("a weight must be a number that is not negative", element=entry.name)
+
+
+@dataclass(frozen=True)
+class FoldDescription:
+    """resolution: quads along the longer side. angle: degrees every crease is driven to, None for no drive.
+
+    handles; assignments: "free" (the fold finds its own) or "bind" (those of the drawing hold); weights;
+    max_iterations: where a fold that does not settle ends.
+    """
+
+    resolution: int = 32
+    angle: float | None = 60.0
+    handles: tuple[Handle, ...] = ()
+    assignments: str = "free"
+    weights: Weights = field(default_factory=Weights)
+    max_iterations: int = 1500
+
+    def __post_init__(self) -> None:
+        if self.angle is not None and not (
+            isinstance(self.angle, int | float) and math.isfinite(self.angle) and 0 <= self.angle <= 180
+        ):
+            raise DescriptionError("the fold angle must lie between 0 and 180 degrees", element="angle")
+        if self.assignments not in ("free", "bind"):
+            raise DescriptionError("assignments must be 'free' or 'bind'", element="assignments")
+        object.__setattr__(self, "handles", tuple(self.handles))
+
+    def to_json(self) -> dict[str, Any]:
+        """A JSON object; ``from_json`` reads it back."""
+        return {"format": FORMAT_VERSION, **asdict(self)}
+
+    @staticmethod
+    def from_json(data: Any) -> FoldDescription:
+        """Raises DescriptionError or HandleError on anything that is not a description."""
+        if not isinstance(data, dict):
+            raise DescriptionError("a fold description must be a JSON object")
+        known = {entry.name for entry in fields(FoldDescription)}
+        unknown = sorted(set(data) - known - {"format"})
+        if unknown:
+            raise DescriptionError("unknown setting", element=str(unknown[0]))
+        if data.get("format", FORMAT_VERSION) != FORMAT_VERSION:
+            raise DescriptionError(f"format {data.get('format')!r} is not known", element="format")
+        values = {name: data[name] for name in known if name in data}
+        values["handles"] = parse_handles(data.get("handles", []))
+        if "weights" in data:
+            try:
+                values["weights"] = Weights(**data["weights"])
+            except TypeError:
+                raise DescriptionError("unknown or missing weight", element="weights") from None
+        return FoldDescription(**values)
+
+
+def parse_handles(data: Any) -> tuple[Handle, ...]:
+    """Handles from JSON: [{"at": [x, y], "target": [X, Y, Z]}, …]. Raises HandleError naming the entry."""
+    if not isinstance(data, list):
+        raise HandleError("handles must be a list of objects with 'at' and 'target'")
+    result = []
+    for k, entry in enumerate(data):
+        element = f"handle {k + 1}"
+        if not isinstance(entry, dict) or not {"at", "target"} <= set(entry):
+            raise HandleError("a handle needs 'at' and 'target'", element=element)
+        try:
+            result.append(Handle(at=tuple(entry["at"]), target=tuple(entry["target"])))
+        except HandleError as error:
+            raise HandleError(error.message, element=element) from None
+        except TypeError:
+            raise HandleError("'at' and 'target' must be lists of numbers", element=element) from None
+    return tuple(result)
+
+
+def read_handles(path: str | Path) -> tuple[Handle, ...]:
+    """Handles from a JSON file. Raises HandleError naming the file and the entry."""
+    path = Path(path)
+    try:
+        if path.stat().st_size > _MAX_BYTES:
+            raise HandleError("the handle file is too large", file=str(path))
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise HandleError(f"cannot be read: {error.strerror or error}", file=str(path)) from None
+    except (ValueError, RecursionError):
+        raise HandleError("is not valid JSON", file=str(path)) from None
+    try:
+        return parse_handles(data)
+    except HandleError as error:
+        raise error.in_file(str(path)) from None

@@ -1,0 +1,177 @@
+"""How a flat sheet starts to fold: a side for every crease, and the small normal offset that leads there.
+
+Nothing in a flat sheet prefers mountain or valley, and the drive asks for neither. A random offset lets each
+stretch of a crease choose for itself, and where choices meet the paper is stuck. Instead:
+- sides are chosen so that every patch can bend one way. A crease of flat curvature k folded to a valley bends
+  the patch on its left one way and the patch on its right the other (the osculating plane bisects the tangent
+  planes), so creases around one patch should agree; and at an inner crease vertex of four or more arms at least
+  three fold one way and at least one the other (a spherical polygon of perimeter 2 pi);
+- the offset is the softest bending of the flat sheet with these sides.
+Both depend on the drawing's geometry alone: a turned, moved, scaled or mirrored drawing starts likewise.
+It is only a start: the fold goes where the energy leads it, and other sides can win.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import coo_matrix, csr_matrix, diags
+from scipy.sparse.linalg import splu
+from shapely import Point
+
+from .arrays import FloatArray, IntArray
+from .net.piecewise_dog import PiecewiseDog
+from .objectives.bending import bending
+from .objectives.continuity import continuity
+from .objectives.fold_angle import driven_points
+
+#: Up to this many chains all choices are tried; more are improved one flip at a time.
+_ENUMERATED = 14
+#: Cost of a crease vertex whose arms cannot close, against agreements between creases, which are scaled to 1.
+_VERTEX_COST = 10.0
+#: Weights of the offset's linear problem: kept folds and closed gaps against bending, and a bound on the rest.
+_FOLD_WEIGHT, _GAP_WEIGHT, _REST_WEIGHT = 1.0, 1e4, 1e-8
+#: Crease points coupled at once; longer creases are thinned.
+_MAX_COUPLED = 1500
+
+
+def choose_sides(net: PiecewiseDog) -> IntArray:
+    """+1 valley or -1 mountain for each chain (n,); the first chain is a valley."""
+    count = len(net.chain_crease)
+    coupling = _couplings(net, count)
+    arms = _inner_vertices(net)
+    if count <= _ENUMERATED:
+        codes = np.arange(1 << max(count - 1, 0))
+        sides = np.ones((len(codes), count), dtype=np.int64)
+        sides[:, 1:] = 1 - 2 * ((codes[:, None] >> np.arange(count - 1)[None]) & 1)
+        best = sides[int(np.argmin(_cost(sides, coupling, arms)))]
+    else:
+        best = _improve(_spread(coupling), coupling, arms)
+    return np.asarray(best * best[0], dtype=np.int64)
+
+
+def first_fold(net: PiecewiseDog, sides: IntArray) -> FloatArray:
+    """(V,) normal offsets whose folds are about ``sides`` (chains,) radians: scale it to taste."""
+    points = net.crease_points
+    chosen = driven_points(net)
+    left, right = points.left_edge[chosen], points.right_edge[chosen]
+    step = net.flat[left[:, 1]] - net.flat[left[:, 0]]
+    length = np.hypot(*step.T)
+    length_right = np.hypot(*(net.flat[right[:, 1]] - net.flat[right[:, 0]]).T)
+    tangent = points.tangent[chosen]
+    # Slope difference across a valley of 1 radian, seen along the grid edge: sine of its angle to the crease.
+    lean = (tangent[:, 0] * step[:, 1] - tangent[:, 1] * step[:, 0]) / length
+    n, size = len(chosen), len(net.flat)
+    rows = np.repeat(np.arange(n), 4)
+    values = np.column_stack([-1 / length, 1 / length, 1 / length_right, -1 / length_right])
+    fold = csr_matrix((values.ravel(), (rows, np.hstack([left, right]).ravel())), shape=(n, size))
+    matrix = _FOLD_WEIGHT * (fold.T @ fold) + _REST_WEIGHT * diags(np.ones(size))
+    for term, weight in (*((b, 1.0) for b in bending(net, 1.0)), (continuity(net, 1.0), _GAP_WEIGHT)):
+        if len(term.stencil) == 0:
+            continue
+        k = term.stencil.shape[1]
+        row = csr_matrix(
+            (term.coefficients.ravel(), (np.repeat(np.arange(len(term.stencil)), k), term.stencil.ravel())),
+            shape=(len(term.stencil), size),
+        )
+        matrix = matrix + weight * (row.T @ diags(term.weight) @ row)
+    wish = fold.T @ (_FOLD_WEIGHT * lean * sides[points.chain[chosen]])
+    return np.asarray(splu(matrix.tocsc()).solve(wish))
+
+
+def _couplings(net: PiecewiseDog, count: int) -> FloatArray:
+    """(n,n) how much two chains around a patch want to fold to one side (+) or to both (-), at most 1."""
+    points = net.crease_points
+    kept = np.flatnonzero(~points.end)
+    kept = kept[:: max(1, len(kept) // _MAX_COUPLED)]
+    bend = _flat_curvature(net)[kept]
+    place, chain = points.position[kept], points.chain[kept]
+    distance = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1))
+    closeness = 1.0 / (1.0 + distance)
+    total = np.zeros((count, count))
+    for vertices, sign in ((points.left_vertices, 1.0), (points.right_vertices, -1.0)):
+        for others, other_sign in ((points.left_vertices, 1.0), (points.right_vertices, -1.0)):
+            patch = net.vertex_patch[vertices[kept, 0]]
+            other = net.vertex_patch[others[kept, 0]]
+            agree = sign * other_sign * bend[:, None] * bend[None] * closeness
+            agree = np.where(patch[:, None] == other[None], agree, 0.0)
+            pairs = coo_matrix((agree.ravel(), (np.repeat(chain, len(kept)), np.tile(chain, len(kept)))),
+                               shape=(count, count))  # fmt: skip
+            total += pairs.toarray()
+    np.fill_diagonal(total, 0.0)
+    largest = np.abs(total).max(initial=0.0)
+    return total / largest if largest > 0 else total
+
+
+def _flat_curvature(net: PiecewiseDog) -> FloatArray:
+    """(K,) signed curvature of the flat creases from the turning of their tangents, 1 / net unit."""
+    points = net.crease_points
+    result = np.zeros(len(points.position))
+    for chain in np.unique(points.chain):
+        mine = np.flatnonzero(points.chain == chain)
+        if len(mine) < 2:
+            continue
+        heading = np.unwrap(np.arctan2(points.tangent[mine, 1], points.tangent[mine, 0]))
+        along = points.along[mine]
+        spaced = np.concatenate([[True], np.diff(along) > 1e-3])
+        if spaced.sum() < 2:
+            continue
+        slope = np.gradient(heading[spaced], along[spaced])
+        result[mine] = np.interp(along, along[spaced], slope)
+    return result
+
+
+def _inner_vertices(net: PiecewiseDog) -> list[IntArray]:
+    """For each crease vertex inside the sheet with four or more arms, the chains of its arms."""
+    points = net.crease_points
+    ends = np.flatnonzero(points.end)
+    places = points.position[ends]
+    rim = net.sheet.boundary
+    result, done = [], np.zeros(len(ends), dtype=bool)
+    for k in range(len(ends)):
+        if done[k]:
+            continue
+        near = np.flatnonzero(np.hypot(*(places - places[k]).T) < 1e-5)
+        done[near] = True
+        if len(near) >= 4 and rim.distance(Point(places[k])) > 1e-5:
+            result.append(points.chain[ends[near]])
+    return result
+
+
+def _cost(sides: IntArray, coupling: FloatArray, arms: list[IntArray]) -> FloatArray:
+    """(m,) cost of choices (m,n)."""
+    cost = -np.einsum("mi,ij,mj->m", sides, coupling, sides, optimize=True)
+    # Ties go to valleys, then to earlier creases: nothing is left to rounding.
+    cost = cost - 1e-6 * sides @ np.linspace(1.0, 0.5, sides.shape[1])
+    for chains in arms:
+        valleys = (sides[:, chains] > 0).sum(axis=1)
+        minority = np.minimum(valleys, len(chains) - valleys)
+        cost = cost + _VERTEX_COST * ((minority < 1) | (len(chains) - minority < 3))
+    return np.asarray(cost)
+
+
+def _spread(coupling: FloatArray) -> IntArray:
+    """Sides along a maximum spanning tree of the couplings: the strongest wishes come true."""
+    count = len(coupling)
+    sides = np.zeros(count, dtype=np.int64)
+    while (sides == 0).any():
+        reach = np.abs(coupling) * (sides != 0)[:, None] * (sides == 0)[None]
+        if reach.max() <= 1e-12:
+            sides[int(np.flatnonzero(sides == 0)[0])] = 1
+            continue
+        i, j = np.unravel_index(int(reach.argmax()), reach.shape)
+        sides[j] = sides[i] * (1 if coupling[i, j] > 0 else -1)
+    return sides
+
+
+def _improve(sides: IntArray, coupling: FloatArray, arms: list[IntArray]) -> IntArray:
+    """Flip single chains and pairs at a vertex while that lowers the cost."""
+    best = float(_cost(sides[None], coupling, arms)[0])
+    for _ in range(4 * len(sides)):
+        trials = np.repeat(sides[None], len(sides), axis=0)
+        trials[np.arange(len(sides)), np.arange(len(sides))] *= -1
+        costs = _cost(trials, coupling, arms)
+        k = int(np.argmin(costs))
+        if costs[k] >= best - 1e-12:
+            break
+        best, sides = float(costs[k]), trials[k]
+    return sides

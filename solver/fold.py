@@ -1,0 +1,243 @@
+"""A whole fold as a pure function: a drawing and a description in, a folded net with its certificate out."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+import numpy as np
+import shapely
+
+from .arrays import FloatArray
+from .description import FoldDescription, Handle
+from .errors import CurvefoldError
+from .folding import REACHED, FoldModel, SqpReport, Status
+from .measurement import Measurement, measure
+from .net.build import build_net
+from .net.piecewise_dog import PiecewiseDog
+from .pattern.crease_pattern import CreasePattern
+
+#: SQP iterations between two calls of ``progress``.
+_REPORT_EVERY = 10
+#: The drive has reached its angle when the median fold angle is this part of it.
+ANGLE_REACHED = 0.85
+#: Mean relative stretch that paper may show (paper, section 6.1).
+MAX_MEAN_STRETCH = 0.003
+
+Progress = Callable[[int, SqpReport], None]
+
+
+class Outcome(Enum):
+    """How a fold ended. ``sentence`` is for the user, ``ok`` whether it did what it was asked."""
+
+    FOLDED = "folded: every target is reached and every crease point is folded"
+    NOT_FOLDED = "a crease is not folded everywhere"
+    AGAINST_ASSIGNMENT = "a crease folded against its assignment"
+    SHALLOW = "folded, but not as deep as asked: the sheet allows no more"
+    OUT_OF_REACH = "a target is out of reach"
+    STRETCHED = "the paper is stretched more than paper can be"
+    UNSETTLED = "stopped before it settled"
+    NOT_FINITE = "the numbers ran away; this is the last good shape"
+
+    @property
+    def sentence(self) -> str:
+        return self.value
+
+    @property
+    def ok(self) -> bool:
+        return self is Outcome.FOLDED
+
+
+@dataclass(frozen=True, eq=False)
+class FoldResult:
+    """A folded net. positions (V,3), drawing units; ``detail`` says what ``status`` means here, and where."""
+
+    pattern: CreasePattern
+    description: FoldDescription
+    net: PiecewiseDog
+    positions: FloatArray
+    measurement: Measurement
+    status: Outcome
+    detail: str
+    iterations: int
+    seconds: float
+    last: SqpReport
+
+    def summary(self) -> str:
+        """A few lines for a terminal."""
+        m = self.measurement
+        low, median, high = fold_angle_quantiles(m)
+        lines = [
+            self.detail,
+            f"{len(self.net.rest)} vertices, {len(self.net.patch_polygons)} patches, "
+            f"{self.iterations} iterations, {self.seconds:.1f} s",
+            f"fold angle {low:.0f}° – {median:.0f}° – {high:.0f}° (10 %, median, 90 %), "
+            f"{m.folded_part:.1%} of the crease points folded",
+            f"stretch mean {m.stretch.mean():.1e}, max {m.stretch.max():.1e}; "
+            f"DOG residual max {self.last.constraint:.1e}",
+        ]
+        return "\n".join(lines)
+
+    def report(self) -> dict[str, Any]:
+        """The certificate as a JSON object: figures relative to mean grid edge 1, angles in degrees."""
+        m = self.measurement
+        return {
+            "status": self.status.name.lower(),
+            "ok": self.status.ok,
+            "sentence": self.detail,
+            "drawing": self.pattern.name,
+            "description": self.description.to_json(),
+            "vertices": len(self.net.rest),
+            "quads": len(self.net.quads),
+            "patches": len(self.net.patch_polygons),
+            "iterations": self.iterations,
+            "seconds": round(self.seconds, 3),
+            "stretch_mean": float(m.stretch.mean()),
+            "stretch_max": float(m.stretch.max()),
+            "continuity_mean": float(m.continuity.mean()) if len(m.continuity) else 0.0,
+            "continuity_max": float(m.continuity.max(initial=0.0)),
+            "dog_residual_max": self.last.constraint,
+            "dog_angle_max": float(m.dog_angle.max(initial=0.0)),
+            "handle_error": self.last.handle_error,
+            "folded": m.folded_part,
+            "fold_angle": [round(angle, 3) for angle in fold_angle_quantiles(m)],
+            "objective": self.last.objective,
+            "creases": [_crease_report(self.pattern, m, k) for k in range(len(self.pattern.creases))],
+            "notes": [*self.pattern.notes, *self.net.notes],
+        }
+
+
+def fold_angle_quantiles(m: Measurement) -> tuple[float, float, float]:
+    """10 %, median and 90 % of the unsigned fold angles, degrees; zeros when none has a meaning."""
+    known = m.fold_angle[np.isfinite(m.fold_angle)]
+    if len(known) == 0:
+        return 0.0, 0.0, 0.0
+    low, median, high = np.quantile(known, [0.1, 0.5, 0.9]).tolist()
+    return low, median, high
+
+
+def found_assignment(m: Measurement, crease: int) -> str:
+    """FOLD letter of what a crease became: V, M, or U where it changes sides or has no angle."""
+    sides = m.fold_sign[(m.crease == crease) & np.isfinite(m.fold_angle)]
+    if len(sides) == 0 or abs(sides.sum()) < 0.8 * len(sides):
+        return "U"
+    return "V" if sides.sum() > 0 else "M"
+
+
+def _crease_report(pattern: CreasePattern, m: Measurement, index: int) -> dict[str, Any]:
+    mine = m.crease == index
+    known = m.fold_angle[mine & np.isfinite(m.fold_angle)]
+    asked = mine & m.asked
+    return {
+        "name": pattern.creases[index].name,
+        "assignment": pattern.creases[index].assignment,
+        "found": found_assignment(m, index),
+        "fold_angle": float(np.median(known)) if len(known) else None,
+        "folded": float(m.folded[asked].mean()) if asked.any() else None,
+        "points": int(mine.sum()),
+    }
+
+
+def fold(
+    pattern: CreasePattern, description: FoldDescription | None = None, progress: Progress | None = None
+) -> FoldResult:
+    """Fold a drawing as described, from flat.
+
+    progress(iterations, report) is called every few iterations. Raises CurvefoldError (pattern, net, handle)
+    before any folding; what goes wrong later is the result's ``status``.
+    """
+    description = description or FoldDescription()
+    begin = time.perf_counter()
+    net = build_net(pattern, description.resolution)
+    model = FoldModel(net, weights=description.weights)
+    if description.assignments == "bind":
+        model.set_assignments([crease.assignment for crease in pattern.creases])
+    model.set_handles(description.handles)
+    model.set_fold_angle(description.angle)
+    iterations = 0
+    while True:
+        report = model.advance(_REPORT_EVERY)
+        iterations += report.iterations
+        if progress is not None:
+            progress(iterations, report)
+        if model.status is not Status.RUNNING or iterations >= description.max_iterations:
+            break
+    measurement = measure(net, model.positions)
+    status, detail = _judge(pattern, description, net, model, report, measurement)
+    return FoldResult(
+        pattern,
+        description,
+        net,
+        model.positions,
+        measurement,
+        status,
+        detail,
+        iterations,
+        time.perf_counter() - begin,
+        report,
+    )
+
+
+def _judge(
+    pattern: CreasePattern,
+    description: FoldDescription,
+    net: PiecewiseDog,
+    model: FoldModel,
+    report: SqpReport,
+    m: Measurement,
+) -> tuple[Outcome, str]:
+    if model.status is Status.NOT_FINITE or not np.isfinite(model.positions).all():
+        return Outcome.NOT_FINITE, Outcome.NOT_FINITE.sentence
+    if report.handle_error > REACHED * net.frame.unit:
+        return Outcome.OUT_OF_REACH, _out_of_reach(description.handles, net, model, report)
+    if model.status is Status.RUNNING:
+        return Outcome.UNSETTLED, f"stopped after {description.max_iterations} iterations before it settled"
+    if not m.folded.all():
+        labels = ", ".join(net.crease_labels[c] for c in m.not_folded)
+        x, y = m.crease_position[np.flatnonzero(~m.folded)[0]]
+        return Outcome.NOT_FOLDED, (
+            f"not folded everywhere: {labels} ({m.folded_part:.1%} of all points are), first at ({x:.4g}, {y:.4g})"
+        )
+    if description.assignments == "bind":
+        against = [
+            net.crease_labels[k]
+            for k, crease in enumerate(pattern.creases)
+            if crease.assignment in "MV" and found_assignment(m, k) != crease.assignment
+        ]
+        if against:
+            return Outcome.AGAINST_ASSIGNMENT, f"folded against its assignment: {', '.join(against)}"
+    mean = float(m.stretch.mean())
+    if mean > MAX_MEAN_STRETCH:
+        return Outcome.STRETCHED, f"the paper is stretched by {mean:.2%} in the mean, more than paper can be"
+    _, median, _ = fold_angle_quantiles(m)
+    if description.angle is not None and median < ANGLE_REACHED * description.angle:
+        return Outcome.SHALLOW, (
+            f"folded to {median:.0f}° in the median where {description.angle:g}° were asked: "
+            "the sheet allows no more without stretching"
+        )
+    return Outcome.FOLDED, Outcome.FOLDED.sentence
+
+
+def _out_of_reach(handles: tuple[Handle, ...], net: PiecewiseDog, model: FoldModel, report: SqpReport) -> str:
+    error = report.handle_error
+    for i in range(len(handles)):
+        for j in range(i):
+            flat = shapely.LineString([handles[i].at, handles[j].at])
+            outline = shapely.transform(net.sheet, net.frame.to_drawing)
+            wanted = float(np.linalg.norm(np.subtract(handles[i].target, handles[j].target)))
+            if wanted > flat.length * (1 + 1e-9) and outline.buffer(1e-9 * net.frame.unit).covers(flat):
+                return (
+                    f"out of reach: the targets of handles {j + 1} and {i + 1} are {wanted:.4g} apart, but the "
+                    f"sheet between them is only {flat.length:.4g} long"
+                )
+    worst = model.worst_handle
+    x, y = handles[worst].at
+    return f"handle {worst + 1} at ({x:.4g}, {y:.4g}) is out of reach: it stays {error:.3g} from its target"
+
+
+def in_words(error: CurvefoldError) -> str:
+    """One line for a user."""
+    return " ".join(str(error).split())

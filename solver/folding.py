@@ -1,0 +1,332 @@
+"""Folding a net: told handles and angles, advanced iteration by iteration, always in a state to be shown."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .arrays import FloatArray, IntArray, frozen_array
+from .constraints.orthogonal_geodesic import LinkAngles, StarAngles
+from .description import Handle, Weights
+from .drive import AngleDrive
+from .errors import HandleError, NotPositiveDefiniteError
+from .first_fold import choose_sides, first_fold
+from .measurement import measure
+from .net.piecewise_dog import PiecewiseDog
+from .objectives.bending import bending
+from .objectives.continuity import continuity
+from .objectives.fold_condition import FoldCondition, fold_condition
+from .objectives.handles import handles
+from .objectives.isometry import isometry
+from .optimize.assembly import Problem
+from .optimize.sqp import StepReport, at_rest, projection_step, sqp_step
+from .optimize.term import LinearTerm, ResidualTerm
+
+#: The drive turns the asked angle at most this much an iteration, degrees (method, section 4: 70° in 225).
+ANGLE_RATE = 0.4
+#: A handle's target moves at most this far an iteration, net units.
+HANDLE_RATE = 0.25
+#: Softness of the constraints, 1/energy: while targets move, then in stages at rest, and while polishing.
+EPS_STAGES, EPS_POLISHING = (1e-2, 1e-3, 1e-5), 1e-7
+#: Still: over this many iterations the merit falls by less than this part of itself (or by _NOTHING).
+_STILL_OVER, _STILL_PART, _NOTHING = 10, 2e-3, 1e-7
+#: A stage ends after so many iterations even if it is not still: the rest is creep (method, section 3).
+_STAGE_MOST = 60
+#: Points that come to rest unfolded: the fold condition is made this much stiffer, at most so often.
+_STIFFER, _STIFFENINGS = 4.0, 3
+#: Polished: the DOG angles hold to this, or no better after so many iterations.
+_EXACT, _MAX_POLISH = 1e-9, 40
+#: A handle is reached within this distance, net units (method, section 4).
+REACHED = 0.3
+#: Fold of the offset that lets a flat sheet choose sides, radians.
+_FIRST_ANGLE = np.radians(2.0)
+#: A net whose vertices all lie within this of a plane is flat, net units.
+_FLAT = 1e-9
+
+
+class Status(Enum):
+    """How a fold stands. ``sentence`` is for the user; reports add what and where."""
+
+    RUNNING = "still moving towards its targets"
+    SETTLED = "settled"
+    NOT_FINITE = "the numbers ran away; the last good shape was kept"
+
+    @property
+    def sentence(self) -> str:
+        return self.value
+
+
+@dataclass(frozen=True, eq=False)
+class SqpReport:
+    """What ``advance`` did. Energies and lengths are in net units (mean grid edge 1).
+
+    status; iterations done; objective by term; constraint: largest DOG residual
+    handle_error: largest distance of a handle from its target, drawing units (0 without handles)
+    asked_angle: the angle the drive asks for now, degrees, None without a drive
+    step_lengths, backtracks (one an iteration); seconds by part, and in all
+    """
+
+    status: Status
+    iterations: int
+    objective: dict[str, float]
+    constraint: float
+    handle_error: float
+    asked_angle: float | None
+    step_lengths: tuple[float, ...]
+    backtracks: tuple[int, ...]
+    seconds: dict[str, float]
+
+
+class FoldModel:
+    """A piecewise DOG on its way to a folded shape.
+
+    net        from ``build_net``
+    positions  (V,3) drawing units to start from; None: the flat sheet
+    weights    of the terms; a weight of 0 leaves its term out
+    Targets that are far away are approached along a path, a bounded step an iteration.
+    """
+
+    def __init__(
+        self, net: PiecewiseDog, positions: ArrayLike | None = None, weights: Weights | None = None
+    ) -> None:
+        self.net = net
+        self.weights = weights or Weights()
+        if positions is None:
+            x = np.column_stack([net.flat, np.zeros(len(net.flat))])
+        else:
+            array = frozen_array(positions, np.float64, (len(net.flat), 3), "positions")
+            if not np.isfinite(array).all():
+                raise ValueError("positions are not finite")
+            x = net.frame.to_net(array)
+        self._state = at_rest(x)
+        self._handles: tuple[Handle, ...] = ()
+        self._points: tuple[IntArray, FloatArray] = (np.zeros((0, 4), dtype=np.int64), np.zeros((0, 4)))
+        self._targets = np.zeros((0, 3))  # where the handles are drawn to in the end, net units
+        self._paths = np.zeros((0, 3))  # where they are drawn to now
+        self._angle: float | None = None
+        self._angle_now = 0.0
+        self._problem: Problem | None = None
+        self._merits: list[float] = []
+        self._stage, self._polished, self._still = 0, 0, False
+        self._condition, self._stiffened = 1.0, 0  # stiffness of the fold condition, in parts of its weight
+        self._drive = AngleDrive(net, self.weights.fold_angle)
+        self.status = Status.RUNNING
+
+    @property
+    def positions(self) -> FloatArray:
+        """(V,3), drawing units."""
+        return self.net.frame.to_drawing(self._state.x)
+
+    def set_handles(self, handles: Sequence[Handle]) -> None:
+        """Replace all handles. Handles that stay at the same point keep their way.
+
+        Raises HandleError: a handle off the sheet, or two at one point with different targets.
+        """
+        located = []
+        for k, handle in enumerate(handles):
+            try:
+                located.append(self.net.locate(handle.at))
+            except HandleError as error:
+                raise HandleError(error.message, element=f"handle {k + 1}", place=handle.at) from None
+        kept = _without_doubles(handles)
+        handles = tuple(handles[k] for k in kept)
+        vertices = np.array([located[k][0] for k in kept], dtype=np.int64).reshape(-1, 4)
+        weights = np.array([located[k][1] for k in kept]).reshape(-1, 4)
+        targets = self.net.frame.to_net(np.array([h.target for h in handles]).reshape(-1, 3))
+        now = np.einsum("hk,hkc->hc", weights, self._state.x[vertices])
+        same = [next((j for j, old in enumerate(self._handles) if old.at == new.at), None) for new in handles]
+        paths = np.array([now[k] if j is None else self._paths[j] for k, j in enumerate(same)])
+        if not (np.array_equal(vertices, self._points[0]) and np.array_equal(weights, self._points[1])):
+            self._problem = None
+        self._handles, self._points = handles, (vertices, weights)
+        self._targets, self._paths = targets, paths.reshape(-1, 3)
+        self._wake()
+
+    def set_fold_angle(self, degrees: float | None) -> None:
+        """Drive all creases towards an unsigned fold angle, 0 to 180 degrees; None switches the drive off."""
+        if degrees is not None and not 0 <= degrees <= 180:
+            raise ValueError("the fold angle must lie between 0 and 180 degrees")
+        if (degrees is None) != (self._angle is None):
+            self._problem = None
+            self._angle_now = self._present_angle() if degrees is not None else 0.0
+        self._angle = None if degrees is None else float(degrees)
+        self._drive.reset()
+        self._wake()
+
+    def advance(self, iterations: int = 5) -> SqpReport:
+        """Take up to ``iterations`` SQP steps; fewer when the model has settled."""
+        begin = time.perf_counter()
+        steps: list[StepReport] = []
+        problem = self._prepared()
+        done = 0
+        for _ in range(iterations):
+            if self.status is not Status.RUNNING:
+                break
+            try:
+                if self._still:
+                    self._polish(problem)
+                else:
+                    moving = self._move_targets(problem)
+                    self._state, step = sqp_step(problem, self._state, EPS_STAGES[self._stage])
+                    steps.append(step)
+                    self._watch(problem, step, moving)
+            except NotPositiveDefiniteError:
+                self.status = Status.NOT_FINITE
+                break
+            done += 1
+        spent: dict[str, float] = {}
+        for step in steps:
+            for name, seconds in step.seconds.items():
+                spent[name] = spent.get(name, 0.0) + seconds
+        spent["total"] = time.perf_counter() - begin
+        evaluation = problem.evaluate(self._state.x)
+        return SqpReport(
+            self.status,
+            done,
+            problem.objective_by_term(evaluation),
+            float(np.abs(evaluation.constraint).max(initial=0.0)),
+            self._handle_error(),
+            None if self._angle is None else self._angle_now,
+            tuple(step.step_length for step in steps),
+            tuple(step.backtracks for step in steps),
+            spent,
+        )
+
+    # --- inside ----------------------------------------------------------------------------------------
+
+    def _wake(self) -> None:
+        self.status = Status.RUNNING
+        self._merits, self._stage, self._polished, self._still = [], 0, 0, False
+
+    def _prepared(self) -> Problem:
+        if self._problem is None:
+            net, weights = self.net, self.weights
+            objectives: list[ResidualTerm | LinearTerm]
+            objectives = [*bending(net, weights.bending), isometry(net, weights.isometry),
+                          continuity(net, weights.continuity)]  # fmt: skip
+            if len(self._handles):
+                objectives.append(handles(*self._points, self._paths, weights.handles))
+            if weights.fold_condition > 0:
+                objectives.append(self._fold_condition())
+            if self._angle is not None:
+                objectives.append(self._drive.term(self._angle_now))
+            constraints: list[ResidualTerm] = [StarAngles(net.stars), LinkAngles(net.links)]
+            self._problem = Problem(objectives, constraints, net.flat, bending(net, 1.0))
+        if self._asks_for_a_move() and np.ptp(self._state.x[:, 2]) < _FLAT:
+            x = self._state.x.copy()
+            x[:, 2] += _FIRST_ANGLE * first_fold(self.net, choose_sides(self.net))
+            self._state = at_rest(x)
+            if self._angle is not None:
+                # The ramp starts from the fold that is there: a smaller angle would flatten the sheet again.
+                self._angle_now = min(float(np.degrees(_FIRST_ANGLE)), self._angle)
+        return self._problem
+
+    def _asks_for_a_move(self) -> bool:
+        return bool(self._angle) or bool(np.abs(self._targets - self._handle_places()).max(initial=0.0) > 1e-9)
+
+    def _present_angle(self) -> float:
+        angles = measure(self.net, self.positions).fold_angle
+        return float(np.nanmedian(angles)) if np.isfinite(angles).any() else 0.0
+
+    def _handle_places(self) -> FloatArray:
+        vertices, weights = self._points
+        return np.einsum("hk,hkc->hc", weights, self._state.x[vertices])
+
+    def _handle_error(self) -> float:
+        gaps = np.linalg.norm(self._handle_places() - self._targets, axis=1)
+        return float(gaps.max(initial=0.0)) * self.net.frame.unit
+
+    def _move_targets(self, problem: Problem) -> bool:
+        """Bring the targets of this iteration a step nearer; whether they are still on their way."""
+        changed: dict[str, ResidualTerm | LinearTerm] = {}
+        moving = False
+        gap = self._targets - self._paths
+        distance = np.linalg.norm(gap, axis=1)
+        if (distance > 0).any():
+            share = np.minimum(1.0, HANDLE_RATE / np.maximum(distance, 1e-300))
+            self._paths = np.where((share >= 1.0)[:, None], self._targets, self._paths + share[:, None] * gap)
+            changed["handles"] = handles(*self._points, self._paths, self.weights.handles)
+            moving = True
+        if self._angle is not None and self._angle_now != self._angle:
+            turn = np.clip(self._angle - self._angle_now, -ANGLE_RATE, ANGLE_RATE)
+            self._angle_now = float(self._angle_now + turn)
+            if abs(self._angle - self._angle_now) < 1e-9:
+                self._angle_now = self._angle
+            changed["fold angle"] = self._drive.term(self._angle_now)
+            moving = True
+        if changed:
+            problem.replace(changed)
+        return moving
+
+    def _watch(self, problem: Problem, step: StepReport, moving: bool) -> None:
+        """Notice when a stage is over: targets at rest and the merit no longer falling."""
+        if moving:
+            self._merits = []
+            return
+        self._merits.append(step.merit)
+        recent = self._merits[-_STILL_OVER:]
+        fall = recent[0] - recent[-1]
+        still = len(recent) == _STILL_OVER and fall < max(_STILL_PART * recent[-1], _NOTHING)
+        if not still and len(self._merits) < _STAGE_MOST:
+            return
+        self._merits = []
+        if self._stage + 1 < len(EPS_STAGES):
+            self._stage += 1
+        else:
+            self._still = not self._amended(problem)
+
+    def _amended(self, problem: Problem) -> bool:
+        """At rest: ease a drive that stretches the paper, stiffen the condition if points are not folded."""
+        changed: dict[str, ResidualTerm | LinearTerm] = {}
+        if self._angle is not None and self._drive.ease(self._state.x):
+            changed["fold angle"] = self._drive.term(self._angle_now)
+        if (
+            self.weights.fold_condition > 0
+            and self._stiffened < _STIFFENINGS
+            and self._asks_for_a_fold()
+            and not measure(self.net, self.positions).folded.all()
+        ):
+            self._condition, self._stiffened = self._condition * _STIFFER, self._stiffened + 1
+            changed["fold condition"] = self._fold_condition()
+        problem.replace(changed)
+        return bool(changed)
+
+    def _fold_condition(self) -> FoldCondition:
+        return fold_condition(self.net, self.weights.fold_condition * self._condition)
+
+    def _asks_for_a_fold(self) -> bool:
+        """Whether the shape is meant to be folded: not when a fold goes back to flat."""
+        return float(np.ptp(self._state.x[:, 2])) > _FLAT and self._angle != 0.0
+
+    def _polish(self, problem: Problem) -> None:
+        """Put the DOG angles right in a shape that has come to rest: tight constraints earlier only crawl."""
+        x, exact = projection_step(problem, self._state.x, EPS_POLISHING)
+        stuck = np.array_equal(x, self._state.x)
+        self._state = at_rest(x)
+        self._polished += 1
+        if exact < _EXACT or stuck or self._polished >= _MAX_POLISH:
+            self.status = Status.SETTLED
+
+
+def _without_doubles(handles: Sequence[Handle]) -> list[int]:
+    """Indices of handles without repeats. Raises HandleError where one point has two targets."""
+    seen: dict[tuple[float, float], int] = {}
+    kept = []
+    for k, handle in enumerate(handles):
+        if handle.at in seen:
+            first = seen[handle.at]
+            if handles[first].target != handle.target:
+                raise HandleError(
+                    f"it lies on the same point as handle {first + 1} but has another target",
+                    element=f"handle {k + 1}",
+                    place=handle.at,
+                )
+            continue
+        seen[handle.at] = k
+        kept.append(k)
+    return kept

@@ -1,0 +1,17 @@
+"""Continuity: the copies of a crease point coincide (paper, section 6.2; method, section 2)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..net.piecewise_dog import PiecewiseDog
+from ..optimize.term import LinearTerm
+
+
+def continuity(net: PiecewiseDog, weight: float) -> LinearTerm:
+    """One row a pair of copies."""
+    stitches = net.stitches
+    count = len(stitches.vertices)
+    return LinearTerm(
+        "continuity", stitches.vertices, stitches.weights, np.zeros((count, 3)), np.full(count, weight)
+    )
