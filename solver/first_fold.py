@@ -13,6 +13,8 @@ It is only a start: the fold goes where the energy leads it, and other sides can
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix, diags
 from scipy.sparse.linalg import splu
@@ -34,19 +36,24 @@ _FOLD_WEIGHT, _GAP_WEIGHT, _REST_WEIGHT = 1.0, 1e4, 1e-8
 _MAX_COUPLED = 1500
 
 
-def choose_sides(net: PiecewiseDog) -> IntArray:
-    """+1 valley or -1 mountain for each chain (n,); the first chain is a valley."""
+def choose_sides(net: PiecewiseDog, bound: Mapping[int, int] | None = None) -> IntArray:
+    """+1 valley or -1 mountain for each chain (n,).
+
+    bound: sides of creases (by index) that are given. Without any, the first chain is a valley.
+    """
     count = len(net.chain_crease)
     coupling = _couplings(net, count)
     arms = _inner_vertices(net)
-    if count <= _ENUMERATED:
-        codes = np.arange(1 << max(count - 1, 0))
-        sides = np.ones((len(codes), count), dtype=np.int64)
-        sides[:, 1:] = 1 - 2 * ((codes[:, None] >> np.arange(count - 1)[None]) & 1)
-        best = sides[int(np.argmin(_cost(sides, coupling, arms)))]
-    else:
-        best = _improve(_spread(coupling), coupling, arms)
-    return np.asarray(best * best[0], dtype=np.int64)
+    given = np.array([(bound or {}).get(int(crease), 0) for crease in net.chain_crease], dtype=np.int64)
+    if not given.any():
+        given[0] = 1
+    free = np.flatnonzero(given == 0)
+    if len(free) <= _ENUMERATED:
+        codes = np.arange(1 << len(free))
+        sides = np.repeat(given[None], len(codes), axis=0)
+        sides[:, free] = 1 - 2 * ((codes[:, None] >> np.arange(len(free))[None]) & 1)
+        return np.asarray(sides[int(np.argmin(_cost(sides, coupling, arms)))])
+    return _improve(_spread(coupling, given), free, coupling, arms)
 
 
 def first_fold(net: PiecewiseDog, sides: IntArray) -> FloatArray:
@@ -149,10 +156,9 @@ def _cost(sides: IntArray, coupling: FloatArray, arms: list[IntArray]) -> FloatA
     return np.asarray(cost)
 
 
-def _spread(coupling: FloatArray) -> IntArray:
-    """Sides along a maximum spanning tree of the couplings: the strongest wishes come true."""
-    count = len(coupling)
-    sides = np.zeros(count, dtype=np.int64)
+def _spread(coupling: FloatArray, given: IntArray) -> IntArray:
+    """Sides along a maximum spanning tree of the couplings from the given ones: the strongest wishes come true."""
+    sides = given.copy()
     while (sides == 0).any():
         reach = np.abs(coupling) * (sides != 0)[:, None] * (sides == 0)[None]
         if reach.max() <= 1e-12:
@@ -163,12 +169,12 @@ def _spread(coupling: FloatArray) -> IntArray:
     return sides
 
 
-def _improve(sides: IntArray, coupling: FloatArray, arms: list[IntArray]) -> IntArray:
-    """Flip single chains and pairs at a vertex while that lowers the cost."""
+def _improve(sides: IntArray, free: IntArray, coupling: FloatArray, arms: list[IntArray]) -> IntArray:
+    """Flip single free chains while that lowers the cost."""
     best = float(_cost(sides[None], coupling, arms)[0])
     for _ in range(4 * len(sides)):
-        trials = np.repeat(sides[None], len(sides), axis=0)
-        trials[np.arange(len(sides)), np.arange(len(sides))] *= -1
+        trials = np.repeat(sides[None], len(free), axis=0)
+        trials[np.arange(len(free)), free] *= -1
         costs = _cost(trials, coupling, arms)
         k = int(np.argmin(costs))
         if costs[k] >= best - 1e-12:

@@ -45,6 +45,8 @@ _EXACT, _MAX_POLISH = 1e-9, 40
 REACHED = 0.3
 #: Fold of the offset that lets a flat sheet choose sides, radians.
 _FIRST_ANGLE = np.radians(2.0)
+#: The offset lifts no vertex by more than this, net units.
+_FIRST_LIFT = 0.5
 #: A net whose vertices all lie within this of a plane is flat, net units.
 _FLAT = 1e-9
 
@@ -115,12 +117,31 @@ class FoldModel:
         self._stage, self._polished, self._still = 0, 0, False
         self._condition, self._stiffened = 1.0, 0  # stiffness of the fold condition, in parts of its weight
         self._drive = AngleDrive(net, self.weights.fold_angle)
+        self._sides: dict[int, int] = {}
         self.status = Status.RUNNING
 
     @property
     def positions(self) -> FloatArray:
         """(V,3), drawing units."""
         return self.net.frame.to_drawing(self._state.x)
+
+    @property
+    def problem(self) -> Problem:
+        """The terms, their sparsity and the linear system at work: for measuring."""
+        return self._prepared()
+
+    @property
+    def worst_handle(self) -> int:
+        """Index of the handle that is farthest from its target. Raises ValueError when there is none."""
+        return int(np.argmax(np.linalg.norm(self._handle_places() - self._targets, axis=1)))
+
+    def set_assignments(self, letters: Sequence[str]) -> None:
+        """FOLD letters, one a crease: M and V decide the side a flat sheet starts to fold to, others are free.
+
+        A start, not a force: where the paper cannot have these sides together, the fold takes others.
+        """
+        sides = {"V": 1, "M": -1}
+        self._sides = {k: sides[letter] for k, letter in enumerate(letters) if letter in sides}
 
     def set_handles(self, handles: Sequence[Handle]) -> None:
         """Replace all handles. Handles that stay at the same point keep their way.
@@ -219,7 +240,9 @@ class FoldModel:
             self._problem = Problem(objectives, constraints, net.flat, bending(net, 1.0))
         if self._asks_for_a_move() and np.ptp(self._state.x[:, 2]) < _FLAT:
             x = self._state.x.copy()
-            x[:, 2] += _FIRST_ANGLE * first_fold(self.net, choose_sides(self.net))
+            offset = first_fold(self.net, choose_sides(self.net, self._sides))
+            # Many folds in a row would lift the far end of the sheet out of the range of the linear offset.
+            x[:, 2] += offset * min(_FIRST_ANGLE, _FIRST_LIFT / max(float(np.abs(offset).max()), 1e-300))
             self._state = at_rest(x)
             if self._angle is not None:
                 # The ramp starts from the fold that is there: a smaller angle would flatten the sheet again.

@@ -13,8 +13,12 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from ..arrays import FloatArray, IntArray
+from ..errors import NotPositiveDefiniteError
 from .linear_system import LinearSystem
 from .term import LinearTerm, ResidualTerm, gather
+
+#: Tried one after the other on the diagonal of a Hessian that does not factorise, energy per length².
+_RESCUES = (1.0, 100.0, 1e4)
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,6 +216,23 @@ class Problem:
         gradient = self._scatter_gradient @ self._buffer_gradient
         pull = 2 * (self._transpose @ (self._weights[:, None] * evaluation.linear))
         return Linearization(evaluation, gradient + pull.ravel(), values, jacobians)
+
+    def factorize(self, model: Linearization) -> None:
+        """Factorise a model's Hessian, with more on the diagonal when rounding has made it indefinite.
+
+        Raises NotPositiveDefiniteError when even that does not help.
+        """
+        for extra in (0.0, *_RESCUES):
+            values = model.values
+            if extra:
+                values = values.copy()
+                values[self._diagonal] += extra
+            try:
+                self.system.factorize(values)
+                return
+            except NotPositiveDefiniteError:
+                if extra == _RESCUES[-1]:
+                    raise
 
     def transposed(self, jacobians: Mapping[str, FloatArray], multipliers: FloatArray) -> FloatArray:
         """Jᵀ λ (3V,) of the constraints."""

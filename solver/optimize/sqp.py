@@ -1,9 +1,9 @@
 """One step of Gauss-Newton SQP on the penalty function f + |φ|²/(2 eps) (method, section 3).
 
-(H + JᵀJ/eps + mu B + shift I) d = -∇f - Jᵀφ/eps, searched along d with Armijo decrease. Three things were
-measured to matter (docs/method.md):
-- no multipliers: near flat J loses rank, they keep growing, and the fold locks; eps is lowered in stages
-  instead, and ``projection_step`` ends it;
+(H + JᵀJ/eps + mu B + shift I) d = -∇f - Jᵀφ/eps, searched along d with Armijo decrease. Three things
+differ from the textbook (docs/method.md has figures):
+- no multipliers: near flat J loses rank and steps with them were short; eps is lowered in stages instead, and
+  ``projection_step`` ends it;
 - damping by the bending metric B, more when a step had to be shortened and less when it was full (Levenberg
   and Marquardt): what limits a step is the change of curvature, whereas rigid turns of patches are harmless;
 - momentum (Nesterov), because folding creeps along curved valleys: each step starts from the extrapolation of
@@ -85,7 +85,7 @@ def sqp_step(problem: Problem, state: SqpState, eps: float) -> tuple[SqpState, S
     model = problem.linearize(x, 1.0 / eps, _SHIFT, state.damping)
     gradient = model.gradient + problem.transposed(model.jacobians, model.evaluation.constraint / eps)
     clock.append(time.perf_counter())
-    problem.system.factorize(model.values)
+    problem.factorize(model)
     clock.append(time.perf_counter())
     step = problem.system.solve(-gradient)
     if not np.isfinite(step).all():
@@ -127,7 +127,7 @@ def projection_step(problem: Problem, x: FloatArray, eps: float) -> tuple[FloatA
     """
     model = problem.linearize(x, 1.0 / eps, _SHIFT)
     constraint = model.evaluation.constraint
-    problem.system.factorize(model.values)
+    problem.factorize(model)
     step = problem.system.solve(-problem.transposed(model.jacobians, constraint / eps)).reshape(-1, 3)
     start = float(constraint @ constraint)
     length = 1.0
