@@ -13,9 +13,9 @@ from ..pattern.crease_pattern import CreasePattern
 from ..pattern.curves import sample_crease
 from .crease_points import find_crease_points
 from .frame import NetFrame, border_direction
-from .grid import OrthogonalGrid, place_grid
+from .grid import OrthogonalGrid, place_grid, snap_vertices
 from .net_points import NodeCopies, node_copies
-from .overlay import Overlay, overlay
+from .overlay import ON_LINE, Overlay, overlay
 from .piecewise_dog import PiecewiseDog, Stitches
 from .render_map import build_render_map
 from .topology import Topology, build_topology
@@ -49,6 +49,7 @@ def build_net(pattern: CreasePattern, resolution: int = 32) -> PiecewiseDog:
     frame = _frame(pattern, int(resolution))
     arrangement = _arrange(pattern, frame)
     grid = place_grid(arrangement)
+    arrangement = snap_vertices(arrangement, grid)
     over = overlay(arrangement, grid)
     topology = build_topology(over, grid)
     if len(topology.vertex_grid) > MAX_VERTICES:
@@ -149,7 +150,7 @@ def _stitches(over: Overlay, copies: NodeCopies, arrangement: Arrangement) -> St
     wanted = (over.line_x >= 0) | (over.line_y >= 0)
     if len(arrangement.vertices):
         tree = shapely.STRtree(shapely.points(over.points))
-        near = tree.query(shapely.points(arrangement.vertices), predicate="dwithin", distance=2e-7)
+        near = tree.query(shapely.points(arrangement.vertices), predicate="dwithin", distance=ON_LINE)
         wanted[near[1]] = True
     nodes = np.flatnonzero(wanted & (count > 1))
     first = np.repeat(copies.start[nodes], count[nodes] - 1)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 from shapely import Polygon
 
 from ..arrays import FloatArray
-from ..pattern.arrangement import CROSSING, Arrangement
+from ..pattern.arrangement import CROSSING, JUNCTION, Arrangement
 
 #: Two lines nearer than this cannot both be kept; cell lengths. Thinner cells bend badly.
 MIN_GAP = 0.35
+#: A crease vertex inside the sheet moves onto a line nearer than this, cell lengths: drawings are rounded, and a
+#: vertex that misses a line by a hair leaves slivers.
+SNAP_TO_LINE = 1e-3
 #: Straight axis-parallel pieces of the border at least this long get a line of their own; cell lengths.
 _BORDER_RUN = 0.75
 #: Closed curves smaller than this get lines through their middle, so that they cross some; cell lengths.
@@ -48,6 +51,26 @@ def place_grid(arrangement: Arrangement) -> OrthogonalGrid:
             f"{MIN_GAP:g} of a cell to another and merged with it; a finer resolution separates them"
         )
     return OrthogonalGrid(xs, ys, tuple(notes))
+
+
+def snap_vertices(arrangement: Arrangement, grid: OrthogonalGrid) -> Arrangement:
+    """The arrangement with inner crease vertices moved onto grid lines that they miss by less than a hair."""
+    inner = np.array([kind != JUNCTION for kind in arrangement.kinds], dtype=bool)
+    moved = arrangement.vertices.copy()
+    for axis, lines in ((0, grid.xs), (1, grid.ys)):
+        nearest = lines[np.abs(moved[:, axis, None] - lines[None]).argmin(axis=1)] if len(moved) else moved[:, axis]
+        close = inner & (np.abs(nearest - moved[:, axis]) < SNAP_TO_LINE)
+        moved[close, axis] = nearest[close]
+    if np.array_equal(moved, arrangement.vertices):
+        return arrangement
+    target = {tuple(old): new for old, new in zip(arrangement.vertices.tolist(), moved, strict=True)}
+    chains = []
+    for chain in arrangement.chains:
+        points = chain.points.copy()
+        for end in (0, -1):
+            points[end] = target.get(tuple(points[end].tolist()), points[end])
+        chains.append(replace(chain, points=points))
+    return replace(arrangement, chains=tuple(chains), vertices=moved)
 
 
 def _wish_border(sheet: Polygon, wishes: tuple[list[tuple[int, float]], list[tuple[int, float]]]) -> None:

@@ -11,16 +11,16 @@ import numpy as np
 import shapely
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
-from shapely import LineString
+from shapely import LineString, Polygon
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..pattern.arrangement import Arrangement, nearest_line, segments_of
 from .grid import OrthogonalGrid
 
 #: Noding grid, cell lengths: nodes snap to multiples of it. Far above rounding at 1,000 cells.
-NODE = 1e-8
+NODE = 1e-11
 #: A point this near to a line lies on it, cell lengths (snapping moves nodes by about NODE).
-ON_LINE = 2e-7
+ON_LINE = 2e-9
 #: Pieces of a cell smaller than this part of it carry no quad of their own.
 MIN_PIECE = 1e-6
 #: The crease points around a patch must span this area, cells; below it the patch joins a neighbour.
@@ -77,8 +77,8 @@ def overlay(arrangement: Arrangement, grid: OrthogonalGrid) -> Overlay:
     lost = sorted(set(chain[~keep].tolist()) - set(chain[keep].tolist()) - {-1})
     segments, chain, border = segments[keep], chain[keep], border[keep]
     while True:
-        left, right, loop_start, loop_nodes, area = _faces(points, segments)
-        island = _island(points, line_x, line_y, segments, chain, border, left, right, len(area))
+        left, right, loop_start, loop_nodes, area = _faces(points, segments, border, sheet)
+        island = _island(points, line_x, line_y, segments, chain, border, left, right, area)
         if not island.any():
             break
         lost = sorted(set(lost) | set(chain[island].tolist()))
@@ -121,7 +121,7 @@ def _island(
     border: BoolArray,
     left: IntArray,
     right: IntArray,
-    faces: int,
+    area: FloatArray,
 ) -> BoolArray:
     """Crease segments (S,) to give up around one patch that too few crease points would hold; all False: none.
 
@@ -129,17 +129,18 @@ def _island(
     """
     inner = ~border & (left >= 0) & (right >= 0)
     through = inner & (chain < 0)
-    patch = _components(left[through], right[through], faces)
+    patch = _components(left[through], right[through], len(area))
     none = np.zeros(len(segments), dtype=bool)
     held = (line_x >= 0) | (line_y >= 0)
     rim = inner & (chain >= 0)
+    patch_area = np.bincount(patch, weights=area)
     for one in range(int(patch.max()) + 1):
         mine = rim & ((patch[left] == one) != (patch[right] == one))
         if not mine.any():
             continue
         nodes = np.unique(segments[mine])
         hull = shapely.MultiPoint(points[nodes[held[nodes]]]).convex_hull
-        if hull.area >= MIN_HOLD or hull.length >= MIN_HINGE:
+        if patch_area[one] > MIN_PIECE and (hull.area >= MIN_HOLD or hull.length >= MIN_HINGE):
             continue
         other = np.where(patch[left] == one, patch[right], patch[left])
         lengths = np.hypot(*(points[segments[:, 1]] - points[segments[:, 0]]).T)
@@ -179,7 +180,9 @@ def _not_dangling(segments: IntArray, alive: BoolArray, count: int) -> BoolArray
         keep &= ~dead
 
 
-def _faces(points: FloatArray, segments: IntArray) -> tuple[IntArray, IntArray, IntArray, IntArray, FloatArray]:
+def _faces(
+    points: FloatArray, segments: IntArray, border: BoolArray, sheet: Polygon
+) -> tuple[IntArray, IntArray, IntArray, IntArray, FloatArray]:
     count = len(segments)
     tail = np.concatenate([segments[:, 0], segments[:, 1]])
     head = np.concatenate([segments[:, 1], segments[:, 0]])
@@ -216,6 +219,11 @@ def _faces(points: FloatArray, segments: IntArray) -> tuple[IntArray, IntArray, 
     cross = (p - base)[:, 0] * (q - base)[:, 1] - (p - base)[:, 1] * (q - base)[:, 0]
     area = 0.5 * np.add.reduceat(cross, starts[:-1])
     inside = area > 0
+    # Walked from inside, a hole's rim encloses area too.
+    rim = np.logical_and.reduceat(np.concatenate([border, border])[flat], starts[:-1])
+    for k in np.flatnonzero(inside & rim):
+        ring = Polygon(points[tail[flat[starts[k] : starts[k + 1]]]])
+        inside[k] = sheet.contains(ring.representative_point())
     number = np.where(inside, np.cumsum(inside) - 1, -1)
     label[flat] = number.repeat(np.diff(starts))
     kept = inside.repeat(np.diff(starts))

@@ -23,7 +23,7 @@ from .curves import CORNER, drop_repeats
 #: Ends nearer than this to the border, to a crease or to each other are joined; part of the longer side.
 SNAP_TOLERANCE = 2e-3
 #: Nodes nearer than this are one node; part of the longer side. Far above rounding, far below any drawing.
-NODE_TOLERANCE = 1e-9
+NODE_TOLERANCE = 1e-12
 
 #: Where a vertex of the arrangement comes from.
 CROSSING, JUNCTION, END, CORNER_POINT = "crossing", "border junction", "end", "corner"
