@@ -13,6 +13,7 @@ It is only a start: the fold goes where the energy leads it, and other sides can
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 
 import numpy as np
@@ -20,7 +21,7 @@ from scipy.sparse import coo_matrix, csr_matrix, diags
 from scipy.sparse.linalg import splu
 from shapely import Point
 
-from .arrays import FloatArray, IntArray
+from .arrays import BoolArray, FloatArray, IntArray
 from .net.piecewise_dog import PiecewiseDog
 from .objectives.bending import bending
 from .objectives.continuity import continuity
@@ -28,8 +29,12 @@ from .objectives.fold_angle import driven_points
 
 #: Up to this many chains all choices are tried; more are improved one flip at a time.
 _ENUMERATED = 14
+#: Pairs are flipped among the first so many chains.
+_PAIRED = 60
 #: Cost of a crease vertex whose arms cannot close, against agreements between creases, which are scaled to 1.
 _VERTEX_COST = 10.0
+#: Vertices with more arms are left to the fold; arms within this of a straight line are one, radians.
+_MAX_ARMS, _STRAIGHT = 10, np.radians(3.0)
 #: Weights of the offset's linear problem: kept folds and closed gaps against bending, and a bound on the rest.
 _FOLD_WEIGHT, _GAP_WEIGHT, _REST_WEIGHT = 1.0, 1e4, 1e-8
 #: Crease points coupled at once; longer creases are thinned.
@@ -127,11 +132,13 @@ def _flat_curvature(net: PiecewiseDog) -> FloatArray:
     return result
 
 
-def _inner_vertices(net: PiecewiseDog) -> list[IntArray]:
-    """For each crease vertex inside the sheet with four or more arms, the chains of its arms."""
+def _inner_vertices(net: PiecewiseDog) -> list[tuple[IntArray, BoolArray]]:
+    """For each crease vertex inside the sheet with four or more arms: the chains of its arms (d,) and, for
+    every choice of sides (2^d,), bit k set where arm k is a mountain, whether paper can fold like that."""
     points = net.crease_points
     ends = np.flatnonzero(points.end)
     places = points.position[ends]
+    heading = points.tangent[ends] * np.where(points.along[ends] < 1e-6, 1.0, -1.0)[:, None]
     rim = net.sheet.boundary
     result, done = [], np.zeros(len(ends), dtype=bool)
     for k in range(len(ends)):
@@ -139,20 +146,42 @@ def _inner_vertices(net: PiecewiseDog) -> list[IntArray]:
             continue
         near = np.flatnonzero(np.hypot(*(places - places[k]).T) < 1e-5)
         done[near] = True
-        if len(near) >= 4 and rim.distance(Point(places[k])) > 1e-5:
-            result.append(points.chain[ends[near]])
+        if 4 <= len(near) <= _MAX_ARMS and rim.distance(Point(places[k])) > 1e-5:
+            result.append((points.chain[ends[near]], _foldable(heading[near])))
     return result
 
 
-def _cost(sides: IntArray, coupling: FloatArray, arms: list[IntArray]) -> FloatArray:
+def _foldable(heading: FloatArray) -> BoolArray:
+    """Which sides the arms (d,2) of a vertex may take (2^d,): a bird's foot, or two straight lines that cross.
+
+    Abel et al., Rigid origami vertices: conditions and forcing sets (2016): three arms of one side that leave
+    no half-plane free and one arm of the other side; or a straight pair of one side and another that changes.
+    """
+    d = len(heading)
+    angle = np.arctan2(heading[:, 1], heading[:, 0])
+    mountain = (np.arange(1 << d)[:, None] >> np.arange(d)) & 1 == 1
+    mixed = mountain.any(axis=1) & ~mountain.all(axis=1)
+    ok = np.zeros(1 << d, dtype=bool)
+    for trio in itertools.combinations(range(d), 3):
+        turns = np.sort(angle[list(trio)])
+        gaps = np.diff(np.append(turns, turns[0] + 2 * np.pi))
+        if gaps.max() < np.pi - _STRAIGHT:
+            same = mountain[:, trio].all(axis=1) | ~mountain[:, trio].any(axis=1)
+            ok |= same & mixed
+    lines = [p for p in itertools.combinations(range(d), 2) if heading[p[0]] @ heading[p[1]] < -np.cos(_STRAIGHT)]
+    for (a, b), (c, e) in itertools.permutations(lines, 2):
+        ok |= (mountain[:, a] == mountain[:, b]) & (mountain[:, c] != mountain[:, e])
+    return ok
+
+
+def _cost(sides: IntArray, coupling: FloatArray, arms: list[tuple[IntArray, BoolArray]]) -> FloatArray:
     """(m,) cost of choices (m,n)."""
     cost = -np.einsum("mi,ij,mj->m", sides, coupling, sides, optimize=True)
     # Ties go to valleys, then to earlier creases: nothing is left to rounding.
     cost = cost - 1e-6 * sides @ np.linspace(1.0, 0.5, sides.shape[1])
-    for chains in arms:
-        valleys = (sides[:, chains] > 0).sum(axis=1)
-        minority = np.minimum(valleys, len(chains) - valleys)
-        cost = cost + _VERTEX_COST * ((minority < 1) | (len(chains) - minority < 3))
+    for chains, foldable in arms:
+        code = ((sides[:, chains] < 0) << np.arange(len(chains))).sum(axis=1)
+        cost = cost + _VERTEX_COST * ~foldable[code]
     return np.asarray(cost)
 
 
@@ -169,12 +198,19 @@ def _spread(coupling: FloatArray, given: IntArray) -> IntArray:
     return sides
 
 
-def _improve(sides: IntArray, free: IntArray, coupling: FloatArray, arms: list[IntArray]) -> IntArray:
-    """Flip single free chains while that lowers the cost."""
+def _improve(
+    sides: IntArray, free: IntArray, coupling: FloatArray, arms: list[tuple[IntArray, BoolArray]]
+) -> IntArray:
+    """Flip single free chains, and pairs of them, while that lowers the cost."""
     best = float(_cost(sides[None], coupling, arms)[0])
+    pairs = np.array(list(itertools.combinations_with_replacement(range(min(len(free), _PAIRED)), 2)))
     for _ in range(4 * len(sides)):
-        trials = np.repeat(sides[None], len(free), axis=0)
-        trials[np.arange(len(free)), free] *= -1
+        singles = np.repeat(sides[None], len(free), axis=0)
+        singles[np.arange(len(free)), free] *= -1
+        doubles = np.repeat(sides[None], len(pairs), axis=0)
+        for column in (0, 1):
+            doubles[np.arange(len(pairs)), free[pairs[:, column]]] *= -1
+        trials = np.vstack([singles, doubles])
         costs = _cost(trials, coupling, arms)
         k = int(np.argmin(costs))
         if costs[k] >= best - 1e-12:

@@ -1,0 +1,58 @@
+"""Milliseconds per SQP iteration, by part, at several sizes: ``python -m benchmarks.speed``.
+
+A square sheet with three arcs folds by the angle drive; every iteration of the run is timed and the medians are
+shown, beside scipy's splu on the same matrices. Nothing is asserted: the figures are for reading.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+
+os.environ.setdefault(
+    "OPENBLAS_NUM_THREADS", "1"
+)  # before numpy: assembly is memory-bound, factors thread themselves
+
+import numpy as np
+
+from benchmarks.linear_system import time_splu
+from solver import Crease, CreasePattern, FoldModel, build_net
+
+#: Resolution of the square sheet for about 500, 1,000, 2,000 and 4,000 vertices.
+RESOLUTIONS = (18, 27, 40, 59)
+PARTS = ("assembly", "factor", "solve", "line search", "total")
+
+
+def arcs() -> CreasePattern:
+    """A square of side 100 with three parallel arcs."""
+    x = np.linspace(-5.0, 105.0, 200)
+    rows = [Crease(np.column_stack([x, y + 12 * np.sin(np.pi * x / 100) - 6])) for y in (25.0, 50.0, 75.0)]
+    return CreasePattern([(0, 0), (100, 0), (100, 100), (0, 100)], creases=rows)
+
+
+def measure_size(resolution: int, iterations: int) -> tuple[int, dict[str, float], float]:
+    """Vertices, median ms an iteration by part, and splu's ms on the matrix of the last iteration."""
+    net = build_net(arcs(), resolution)
+    model = FoldModel(net)
+    model.set_fold_angle(60.0)
+    model.advance(3)
+    rows = [model.advance(1).seconds for _ in range(iterations)]
+    medians = {part: 1e3 * float(np.median([row.get(part, 0.0) for row in rows])) for part in PARTS}
+    problem = model.problem
+    values = problem.linearize(net.frame.to_net(model.positions), 1e3, 1e-3).values
+    right = np.random.default_rng(0).standard_normal(3 * len(net.rest))
+    return len(net.rest), medians, 1e3 * time_splu(problem.rows, problem.columns, values, right)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--iterations", type=int, default=40)
+    args = parser.parse_args()
+    print(f"{'vertices':>9}" + "".join(f"{part:>13}" for part in PARTS) + f"{'splu instead':>14}   (ms, medians)")
+    for resolution in RESOLUTIONS:
+        count, medians, splu = measure_size(resolution, args.iterations)
+        print(f"{count:9d}" + "".join(f"{medians[part]:13.2f}" for part in PARTS) + f"{splu:14.1f}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
