@@ -20,7 +20,9 @@ from solver import Crease, CreasePattern, FoldModel, build_net
 
 #: Resolution of the square sheet for about 500, 1,000, 2,000 and 4,000 vertices.
 RESOLUTIONS = (18, 27, 40, 59)
-PARTS = ("assembly", "factor", "solve", "line search", "total")
+#: Iterations in one call, as in the paper (section 7).
+PER_FRAME = 5
+PARTS = ("momentum", "assembly", "factor", "solve", "line search", "total")
 
 
 def arcs() -> CreasePattern:
@@ -30,14 +32,14 @@ def arcs() -> CreasePattern:
     return CreasePattern([(0, 0), (100, 0), (100, 100), (0, 100)], creases=rows)
 
 
-def measure_size(resolution: int, iterations: int) -> tuple[int, dict[str, float], float]:
+def measure_size(resolution: int, frames: int) -> tuple[int, dict[str, float], float]:
     """Vertices, median ms an iteration by part, and splu's ms on the matrix of the last iteration."""
     net = build_net(arcs(), resolution)
     model = FoldModel(net)
     model.set_fold_angle(60.0)
     model.advance(3)
-    rows = [model.advance(1).seconds for _ in range(iterations)]
-    medians = {part: 1e3 * float(np.median([row.get(part, 0.0) for row in rows])) for part in PARTS}
+    rows = [model.advance(PER_FRAME).seconds for _ in range(frames)]
+    medians = {p: 1e3 / PER_FRAME * float(np.median([row.get(p, 0.0) for row in rows])) for p in PARTS}
     problem = model.problem
     values = problem.linearize(net.frame.to_net(model.positions), 1e3, 1e-3).values
     right = np.random.default_rng(0).standard_normal(3 * len(net.rest))
@@ -46,11 +48,11 @@ def measure_size(resolution: int, iterations: int) -> tuple[int, dict[str, float
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--iterations", type=int, default=40)
+    parser.add_argument("--frames", type=int, default=12, help="calls of five iterations (default 12)")
     args = parser.parse_args()
     print(f"{'vertices':>9}" + "".join(f"{part:>13}" for part in PARTS) + f"{'splu instead':>14}   (ms, medians)")
     for resolution in RESOLUTIONS:
-        count, medians, splu = measure_size(resolution, args.iterations)
+        count, medians, splu = measure_size(resolution, args.frames)
         print(f"{count:9d}" + "".join(f"{medians[part]:13.2f}" for part in PARTS) + f"{splu:14.1f}", flush=True)
 
 
