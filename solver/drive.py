@@ -42,11 +42,15 @@ class AngleDrive:
 
     def ease(self, x: FloatArray) -> bool:
         """Give way at rest in positions x (V,3), net units, when they are over the budget. Whether it did."""
-        net = self._net
-        length = np.linalg.norm(x[net.edges[:, 1]] - x[net.edges[:, 0]], axis=1)
-        mean = float(np.abs(length / net.edge_length - 1).mean())
+        mean = mean_stretch(self._net, x)
         if mean <= MEAN_BUDGET or self._eased >= _EASINGS:
             return False
         self._strength *= float(np.clip((MEAN_BUDGET / mean) ** _EASE_POWER, _EASE_LEAST, _EASE_MOST))
         self._eased += 1
         return True
+
+
+def mean_stretch(net: PiecewiseDog, x: FloatArray) -> float:
+    """Mean relative change of length of the net's edges at x (V,3), net units."""
+    length = np.linalg.norm(x[net.edges[:, 1]] - x[net.edges[:, 0]], axis=1)
+    return float(np.abs(length / net.edge_length - 1).mean())

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from .arrays import FloatArray, IntArray, frozen_array
 from .constraints.orthogonal_geodesic import LinkAngles, StarAngles
 from .description import Handle, Weights
-from .drive import AngleDrive
+from .drive import MEAN_BUDGET, AngleDrive, mean_stretch
 from .errors import HandleError, NotPositiveDefiniteError
 from .first_fold import choose_sides, first_fold
 from .measurement import measure
@@ -25,7 +25,7 @@ from .objectives.handles import handles
 from .objectives.isometry import isometry
 from .optimize.assembly import Problem
 from .optimize.sqp import StepReport, at_rest, projection_step, sqp_step
-from .optimize.term import LinearTerm, ResidualTerm
+from .optimize.term import LinearTerm, ResidualTerm, gather
 
 #: The drive turns the asked angle at most this much an iteration, degrees (method, section 4: 70° in 225).
 ANGLE_RATE = 0.4
@@ -37,8 +37,13 @@ EPS_STAGES, EPS_POLISHING = (1e-2, 1e-3, 1e-5), 1e-7
 _STILL_OVER, _STILL_PART, _NOTHING = 10, 2e-3, 1e-7
 #: A stage ends after so many iterations even if it is not still: the rest is creep (method, section 3).
 _STAGE_MOST = 60
-#: Points that come to rest unfolded: the fold condition is made this much stiffer, at most so often.
+#: Points that come to rest unfolded, and handles off their targets: their terms are made this much stiffer, at
+#: most so often.
 _STIFFER, _STIFFENINGS = 4.0, 3
+#: A fold is safe while the tilts of its two sides, which should cancel, do so to this part.
+_MARGIN = 0.5
+#: Handles farther than this from their targets at rest pull harder, net units.
+_CLOSE = 0.05
 #: Polished: the DOG angles hold to this, or no better after so many iterations.
 _EXACT, _MAX_POLISH = 1e-9, 40
 #: A handle is reached within this distance, net units (method, section 4).
@@ -116,6 +121,7 @@ class FoldModel:
         self._merits: list[float] = []
         self._stage, self._polished, self._still = 0, 0, False
         self._condition, self._stiffened = 1.0, 0  # stiffness of the fold condition, in parts of its weight
+        self._pull, self._pulled = 1.0, 0  # of the handles, in parts of their weight
         self._drive = AngleDrive(net, self.weights.fold_angle)
         self._sides: dict[int, int] = {}
         self.status = Status.RUNNING
@@ -223,6 +229,10 @@ class FoldModel:
     def _wake(self) -> None:
         self.status = Status.RUNNING
         self._merits, self._stage, self._polished, self._still = [], 0, 0, False
+        if self._pulled:
+            self._pull, self._pulled = 1.0, 0
+            if self._problem is not None:
+                self._problem.replace({"handles": self._handle_term()})
 
     def _prepared(self) -> Problem:
         if self._problem is None:
@@ -231,7 +241,7 @@ class FoldModel:
             objectives = [*bending(net, weights.bending), isometry(net, weights.isometry),
                           continuity(net, weights.continuity)]  # fmt: skip
             if len(self._handles):
-                objectives.append(handles(*self._points, self._paths, weights.handles))
+                objectives.append(self._handle_term())
             if weights.fold_condition > 0:
                 objectives.append(self._fold_condition())
             if self._angle is not None:
@@ -273,7 +283,7 @@ class FoldModel:
         if (distance > 0).any():
             share = np.minimum(1.0, HANDLE_RATE / np.maximum(distance, 1e-300))
             self._paths = np.where((share >= 1.0)[:, None], self._targets, self._paths + share[:, None] * gap)
-            changed["handles"] = handles(*self._points, self._paths, self.weights.handles)
+            changed["handles"] = self._handle_term()
             moving = True
         if self._angle is not None and self._angle_now != self._angle:
             turn = np.clip(self._angle - self._angle_now, -ANGLE_RATE, ANGLE_RATE)
@@ -308,23 +318,45 @@ class FoldModel:
         changed: dict[str, ResidualTerm | LinearTerm] = {}
         if self._angle is not None and self._drive.ease(self._state.x):
             changed["fold angle"] = self._drive.term(self._angle_now)
-        if (
-            self.weights.fold_condition > 0
-            and self._stiffened < _STIFFENINGS
-            and self._asks_for_a_fold()
-            and not measure(self.net, self.positions).folded.all()
-        ):
-            self._condition, self._stiffened = self._condition * _STIFFER, self._stiffened + 1
-            changed["fold condition"] = self._fold_condition()
+        if self._barely_folded():
+            changed["fold condition"] = self._stiffer_condition()
+        if self._handles_lag():
+            self._pull, self._pulled = self._pull * _STIFFER, self._pulled + 1
+            changed["handles"] = self._handle_term()
         problem.replace(changed)
         return bool(changed)
 
+    def _barely_folded(self) -> bool:
+        """Whether some point is not folded, or so little that polishing could undo it, and more can be done."""
+        if not self._can_stiffen():
+            return False
+        term = self._fold_condition()
+        first, second = term.tilts(gather(np.ascontiguousarray(self._state.x.T), term.stencil))
+        safe = np.abs(first + second) <= _MARGIN * np.abs(first - second)
+        return not (safe.all() and measure(self.net, self.positions).folded.all())
+
+    def _can_stiffen(self) -> bool:
+        """Whether there is a fold condition that may still be made stiffer; not when a fold goes back to flat."""
+        asked = self.weights.fold_condition > 0 and len(self.net.crease_points.carrier) > 0
+        bent = float(np.ptp(self._state.x[:, 2])) > _FLAT and self._angle != 0.0
+        return asked and bent and self._stiffened < _STIFFENINGS
+
+    def _stiffer_condition(self) -> FoldCondition:
+        self._condition, self._stiffened = self._condition * _STIFFER, self._stiffened + 1
+        return self._fold_condition()
+
+    def _handles_lag(self) -> bool:
+        """Whether handles stay off their targets though the paper is far from stretched: bending holds them."""
+        if not len(self._handles) or self._pulled >= _STIFFENINGS:
+            return False
+        gap = np.linalg.norm(self._handle_places() - self._targets, axis=1).max()
+        return bool(gap > _CLOSE) and mean_stretch(self.net, self._state.x) <= 0.5 * MEAN_BUDGET
+
+    def _handle_term(self) -> LinearTerm:
+        return handles(*self._points, self._paths, self.weights.handles * self._pull)
+
     def _fold_condition(self) -> FoldCondition:
         return fold_condition(self.net, self.weights.fold_condition * self._condition)
-
-    def _asks_for_a_fold(self) -> bool:
-        """Whether the shape is meant to be folded: not when a fold goes back to flat."""
-        return float(np.ptp(self._state.x[:, 2])) > _FLAT and self._angle != 0.0
 
     def _polish(self, problem: Problem) -> None:
         """Put the DOG angles right in a shape that has come to rest: tight constraints earlier only crawl."""
@@ -332,7 +364,13 @@ class FoldModel:
         stuck = np.array_equal(x, self._state.x)
         self._state = at_rest(x)
         self._polished += 1
-        if exact < _EXACT or stuck or self._polished >= _MAX_POLISH:
+        if not (exact < _EXACT or stuck or self._polished >= _MAX_POLISH):
+            return
+        if self._can_stiffen() and not measure(self.net, self.positions).folded.all():
+            # Polishing undid a faint fold: back to settling with a stiffer condition.
+            problem.replace({"fold condition": self._stiffer_condition()})
+            self._still, self._polished = False, 0
+        else:
             self.status = Status.SETTLED
 
 
