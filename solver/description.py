@@ -12,6 +12,10 @@ from .errors import DescriptionError, HandleError
 
 #: Version of the JSON written by ``FoldDescription.to_json``.
 FORMAT_VERSION = 1
+#: Quads along the longer side that a net may have, least and most.
+RESOLUTIONS = (4, 1000)
+#: More iterations than any fold needs.
+MAX_ITERATIONS = 1_000_000
 #: Handle files larger than this are refused before they are parsed, bytes.
 _MAX_BYTES = 16 * 1024 * 1024
 
@@ -78,6 +82,10 @@ class FoldDescription:
             isinstance(self.angle, int | float) and math.isfinite(self.angle) and 0 <= self.angle <= 180
         ):
             raise DescriptionError("the fold angle must lie between 0 and 180 degrees", element="angle")
+        for name, least, most in (("resolution", *RESOLUTIONS), ("max_iterations", 1, MAX_ITERATIONS)):
+            value = getattr(self, name)
+            if type(value) is not int or not least <= value <= most:
+                raise DescriptionError(f"must be a whole number from {least} to {most}", element=name)
         if self.assignments not in ("free", "bind"):
             raise DescriptionError("assignments must be 'free' or 'bind'", element="assignments")
         object.__setattr__(self, "handles", tuple(self.handles))

@@ -29,7 +29,10 @@ def _row_gradient(
 
 @dataclass(frozen=True, eq=False)
 class StarAngles:
-    """Three rows at every inner vertex. stencil (n,5): centre, +x, +y, -x, -y. Exact: weight is unused."""
+    """The angles at every inner vertex, stencil (n,5): centre, +x, +y, -x, -y. Exact: weight is unused.
+
+    Three of the four rows say all; four keep the penalty the same under quarter turns and mirrors of the grid.
+    """
 
     stencil: IntArray
     name: str = "star angles"
@@ -40,13 +43,13 @@ class StarAngles:
 
     def residual(self, x: FloatArray) -> FloatArray:
         e = x[:, 1:] - x[:, :1]
-        return np.stack([_row(e[:, k], e[:, (k + 1) % 4], e[:, (k + 2) % 4]) for k in range(3)])
+        return np.stack([_row(e[:, k], e[:, (k + 1) % 4], e[:, (k + 2) % 4]) for k in range(4)])
 
     def linearize(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         e = x[:, 1:] - x[:, :1]
-        residual = np.empty((3, x.shape[2]))
-        jacobian = np.zeros((3, 3, 5, x.shape[2]))
-        for k in range(3):
+        residual = np.empty((4, x.shape[2]))
+        jacobian = np.zeros((4, 3, 5, x.shape[2]))
+        for k in range(4):
             a, b, c = k, (k + 1) % 4, (k + 2) % 4
             residual[k], g1, g2, g3 = _row_gradient(e[:, a], e[:, b], e[:, c])
             jacobian[k, :, 1 + a], jacobian[k, :, 1 + b], jacobian[k, :, 1 + c] = g1, g2, g3

@@ -7,6 +7,7 @@ import shapely
 from shapely import Polygon
 
 from ..arrays import FloatArray, IntArray
+from ..description import RESOLUTIONS
 from ..errors import NetError, PatternError
 from ..pattern.arrangement import Arrangement, arrange, sheet_polygon
 from ..pattern.crease_pattern import CreasePattern
@@ -20,8 +21,6 @@ from .piecewise_dog import PiecewiseDog, Stitches
 from .render_map import build_render_map
 from .topology import Topology, build_topology
 
-#: Quads along the longer side that a net may have.
-MIN_RESOLUTION, MAX_RESOLUTION = 4, 1000
 #: Samples of a crease are at most this far apart before noding, cell lengths.
 _SAMPLE_SPACING = 0.08
 #: A sheet narrower than this many cells cannot bend in its width.
@@ -38,8 +37,8 @@ def build_net(pattern: CreasePattern, resolution: int = 32) -> PiecewiseDog:
     Raises PatternError for a drawing without anything to fold or with a border that crosses itself, and
     NetError when the resolution is out of range or the sheet is too thin for it.
     """
-    if not isinstance(resolution, int | np.integer) or not MIN_RESOLUTION <= resolution <= MAX_RESOLUTION:
-        raise NetError(f"the resolution must be a whole number from {MIN_RESOLUTION} to {MAX_RESOLUTION}")
+    if not isinstance(resolution, int | np.integer) or not RESOLUTIONS[0] <= resolution <= RESOLUTIONS[1]:
+        raise NetError(f"the resolution must be a whole number from {RESOLUTIONS[0]} to {RESOLUTIONS[1]}")
     if not pattern.creases:
         raise PatternError("there is no crease, so there is nothing to fold", element="creases")
     total = len(pattern.boundary) + sum(len(c.points) for c in pattern.creases)

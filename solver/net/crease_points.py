@@ -37,10 +37,10 @@ class CreasePoints:
     left_vertices, right_vertices (K,4), left_weights, right_weights (K,4): the point in the two patches
     left_edge, right_edge (K,2): directed grid edges, equal when flat, one on each side; -1 where none
     cos2 (K,) squared cosine of the flat angle between that edge and the tangent (alpha of Lemma 5.1)
-    carrier (F,) points with a fold condition; fold_vertices (F,8): a1, b1, a2, b2 (the grid edge in the left
-    and right patch), two of the point before, two of the point after; fold_weights (F,3): position of the
-    point, of the point before, and after, each along its pair; fold_neighbours (F,2) the crease points
-    before and after
+    carrier (F,) points with a fold condition
+    fold_vertices (F,12): a1, b1, a2, b2 (the grid edge in the left and right patch), the point before as two
+    vertices of the left and two of the right patch, the point after likewise; fold_weights (F,3): places of the
+    point, the one before and the one after along their pairs; fold_neighbours (F,2) these as crease points
     """
 
     position: FloatArray
@@ -235,8 +235,15 @@ class _Builder:
         angle = min(_line_angle(edge / ne, back / nb), _line_angle(edge / ne, front / nf))
         if curvature < MIN_CURVATURE or angle < MIN_EDGE_ANGLE:
             return None
-        vertices = [*left[:2], *right[:2], *before[:2], *after[:2]]
+        neighbours = [row for m in (m_before, m_after) for row in self._both(rows[m])]
+        vertices = [*left[:2], *right[:2], *neighbours]
         return vertices, [left[2], before[2], after[2]], [m_before, m_after]
+
+    def _both(self, row: _Row) -> tuple[int, ...]:
+        """The pairs of a point in the left and the right patch; a missing right one is replaced by the left."""
+        left, right = self._pair(row.left), self._pair(row.right)
+        assert left is not None
+        return (*left[:2], *(right or left)[:2])
 
     def _neighbour(
         self, rows: list[_Row], k: int, step: int, closed: bool, length: float
@@ -276,7 +283,7 @@ class _Builder:
         ]
         names = [field.name for field in fields(CreasePoints)]
         arrays.append(frozen_array(self.carrier, int, (None,), "carrier"))
-        arrays.append(frozen_array([v for v, _, _ in self.fold], int, (None, 8), "fold_vertices"))
+        arrays.append(frozen_array([v for v, _, _ in self.fold], int, (None, 12), "fold_vertices"))
         arrays.append(frozen_array([w for _, w, _ in self.fold], float, (None, 3), "fold_weights"))
         arrays.append(frozen_array([n for _, _, n in self.fold], int, (None, 2), "fold_neighbours"))
         return CreasePoints(**dict(zip(names, arrays, strict=True)))

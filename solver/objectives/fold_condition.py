@@ -22,7 +22,9 @@ _MIN_SCALE = 0.02
 
 @dataclass(frozen=True, eq=False)
 class FoldCondition:
-    """stencil (n,8): a1, b1, a2, b2 (grid edge left and right), point before (2), point after (2).
+    """stencil (n,12): a1, b1, a2, b2 (grid edge left and right), the point before (2 left, 2 right) and after.
+
+    Crease points are means of their two copies, so that neither side counts for more.
 
     places (3,n): position of the crease point, the one before, and the one after along their pairs
     scale (n,): rest value |e||ef x eb|, net units³; weight (n,)
@@ -55,27 +57,27 @@ class FoldCondition:
         w = ra * e1 + rb * e2
         g_front, g_back = _cross(back, w), _cross(w, front)
         g_here = -(g_front + g_back)
-        t, tb, tf = self.places
+        t, tb, tf = 0.5 * self.places
+        h = 0.5
         jacobian = np.stack(
             [
-                (1 - t) * g_here - ra * binormal,
+                (h - t) * g_here - ra * binormal,
                 t * g_here + ra * binormal,
-                -rb * binormal,
-                rb * binormal,
-                (1 - tb) * g_back,
-                tb * g_back,
-                (1 - tf) * g_front,
-                tf * g_front,
+                (h - t) * g_here - rb * binormal,
+                t * g_here + rb * binormal,
+                *((h - tb) * g_back, tb * g_back) * 2,
+                *((h - tf) * g_front, tf * g_front) * 2,
             ],
             axis=1,
         )
         return ((a + b) / root)[None], jacobian[None]
 
     def _frame(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        t, tb, tf = self.places
-        here = (1 - t) * x[:, 0] + t * x[:, 1]
-        back = (1 - tb) * x[:, 4] + tb * x[:, 5] - here
-        front = (1 - tf) * x[:, 6] + tf * x[:, 7] - here
+        here, before, after = (
+            0.5 * ((1 - t) * (x[:, k] + x[:, k + 2]) + t * (x[:, k + 1] + x[:, k + 3]))
+            for k, t in zip((0, 4, 8), self.places, strict=True)
+        )
+        back, front = before - here, after - here
         return back, front, _cross(front, back)
 
 
@@ -87,10 +89,11 @@ def fold_condition(net: PiecewiseDog, weight: float) -> FoldCondition:
     """The condition at every crease point that carries one."""
     points = net.crease_points
     flat = net.flat[points.fold_vertices]
-    t, tb, tf = points.fold_weights.T[:, :, None]
-    here = (1 - t) * flat[:, 0] + t * flat[:, 1]
-    back = (1 - tb) * flat[:, 4] + tb * flat[:, 5] - here
-    front = (1 - tf) * flat[:, 6] + tf * flat[:, 7] - here
+    here, before, after = (
+        (1 - t)[:, None] * flat[:, k] + t[:, None] * flat[:, k + 1]
+        for k, t in zip((0, 4, 8), points.fold_weights.T, strict=True)
+    )
+    back, front = before - here, after - here
     edge = np.hypot(*(flat[:, 1] - flat[:, 0]).T)
     area = np.abs(front[:, 0] * back[:, 1] - front[:, 1] * back[:, 0])
     return FoldCondition(

@@ -104,6 +104,9 @@ def sqp_step(problem: Problem, state: SqpState, eps: float) -> tuple[SqpState, S
             length = 0.0
             break
         length, backtracks = 0.5 * length, backtracks + 1
+    if float(gradient @ velocity.ravel()) > 0.0:
+        # The last move went uphill: momentum starts anew (O'Donoghue and Candès 2015, gradient scheme).
+        momentum = 0
     damping = state.damping * (_RAISE if length < 1.0 else _LOWER)
     damping = min(max(damping, _LEAST_DAMPING), _MOST_DAMPING)
     after = x + length * move
