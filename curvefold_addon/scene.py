@@ -10,7 +10,7 @@ from .bridge import framing, pose
 from .node_tree import node_tree
 
 #: How high the camera may stand, seen from the paper; which, and from which side, is chosen for each fold.
-CAMERA_ELEVATIONS = (radians(38.0), radians(28.0), radians(47.0))
+CAMERA_ELEVATIONS = (radians(34.0), radians(22.0), radians(46.0))
 CAMERA_LENS_MM = 70.0
 #: Empty border around the paper, relative to its size.
 FRAME_MARGIN = 0.12

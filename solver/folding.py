@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -46,6 +47,8 @@ _MARGIN = 0.5
 _CLOSE = 0.05
 #: Polished: the DOG angles hold to this, or no better after so many iterations.
 _EXACT, _MAX_POLISH = 1e-9, 40
+#: Handles nearer than this to each other hold one point, net units.
+_SAME_POINT = 1e-6
 #: A handle is reached within this distance, net units (method, section 4).
 REACHED = 0.3
 #: Fold of the offset that lets a flat sheet choose sides, radians.
@@ -160,7 +163,7 @@ class FoldModel:
                 located.append(self.net.locate(handle.at))
             except HandleError as error:
                 raise HandleError(error.message, element=f"handle {k + 1}", place=handle.at) from None
-        kept = _without_doubles(handles)
+        kept = _without_doubles(handles, self.net.frame.unit)
         handles = tuple(handles[k] for k in kept)
         vertices = np.array([located[k][0] for k in kept], dtype=np.int64).reshape(-1, 4)
         weights = np.array([located[k][1] for k in kept]).reshape(-1, 4)
@@ -374,20 +377,20 @@ class FoldModel:
             self.status = Status.SETTLED
 
 
-def _without_doubles(handles: Sequence[Handle]) -> list[int]:
-    """Indices of handles without repeats. Raises HandleError where one point has two targets."""
-    seen: dict[tuple[float, float], int] = {}
-    kept = []
+def _without_doubles(handles: Sequence[Handle], unit: float) -> list[int]:
+    """Indices of handles without repeats. Raises HandleError where one point has two targets.
+
+    unit: drawing units in one net unit; points nearer than _SAME_POINT of it are one.
+    """
+    kept: list[int] = []
     for k, handle in enumerate(handles):
-        if handle.at in seen:
-            first = seen[handle.at]
-            if handles[first].target != handle.target:
-                raise HandleError(
-                    f"it lies on the same point as handle {first + 1} but has another target",
-                    element=f"handle {k + 1}",
-                    place=handle.at,
-                )
-            continue
-        seen[handle.at] = k
-        kept.append(k)
+        first = next((j for j in kept if math.dist(handles[j].at, handle.at) <= _SAME_POINT * unit), None)
+        if first is None:
+            kept.append(k)
+        elif handles[first].target != handle.target:
+            raise HandleError(
+                f"it lies on the same point as handle {first + 1} but has another target",
+                element=f"handle {k + 1}",
+                place=handle.at,
+            )
     return kept
