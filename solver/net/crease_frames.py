@@ -106,16 +106,25 @@ def _derivatives(net: PiecewiseDog, vertices: IntArray, weights: FloatArray) -> 
 
 
 def _along(net: PiecewiseDog, a: int, b: int, t: float, axis: int) -> _Row:
-    """Derivative at a + t (b - a) of the parabola through a, b and the next vertex of the patch."""
+    """Derivative at a + t (b - a) of the parabola through a, b and the next vertex of the patch on its own side.
+
+    The mean of two parabolas where neither end tells more than the other, so that no direction is preferred.
+    """
     u = net.flat[:, axis]
+    at = float(u[a] + t * (u[b] - u[a]))
     before, after = int(net.neighbours[a, axis + 2]), int(net.neighbours[b, axis])
     # The vertex on the patch's own side has a whole neighbourhood; the other one is an extension.
-    third = before if before >= 0 and (after < 0 or _inner(net, a) or not _inner(net, b)) else after
-    at = float(u[a] + t * (u[b] - u[a]))
-    if third < 0:
+    first = before >= 0 and (after < 0 or _inner(net, a) or not _inner(net, b))
+    second = after >= 0 and (before < 0 or _inner(net, b) or not _inner(net, a))
+    thirds = [third for third, good in ((before, first), (after, second)) if good]
+    if not thirds:
         length = float(u[b] - u[a])
         return {a: -1 / length, b: 1 / length}
-    return _parabola([a, b, third], [float(u[v]) for v in (a, b, third)], at)
+    row: _Row = {}
+    for third in thirds:
+        for v, c in _parabola([a, b, third], [float(u[v]) for v in (a, b, third)], at).items():
+            row[v] = row.get(v, 0.0) + c / len(thirds)
+    return row
 
 
 def _inner(net: PiecewiseDog, v: int) -> bool:
