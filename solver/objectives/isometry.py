@@ -28,6 +28,10 @@ class Isometry:
         residual = ((e * e).sum(0) - self.rest_squared)[None]
         return residual, np.stack([-2 * e, 2 * e], axis=1)[None]
 
+    def edge_stiffness(self, residual: FloatArray) -> FloatArray:
+        """4 w r of stretched edges: a pulled string resists sideways, and without it steps overshoot sideways."""
+        return 4 * self.weight * np.maximum(residual[0], 0.0)
+
 
 def isometry(net: PiecewiseDog, weight: float) -> Isometry:
     """``weight`` is divided by the number of edges, as in the paper (section 6.2)."""

@@ -15,7 +15,7 @@ from scipy.sparse import csr_matrix
 from ..arrays import FloatArray, IntArray
 from ..errors import NotPositiveDefiniteError
 from .linear_system import LinearSystem
-from .term import LinearTerm, ResidualTerm, gather
+from .term import EdgeTerm, LinearTerm, ResidualTerm, gather
 
 #: Tried one after the other on the diagonal of a Hessian that does not factorise, energy per length².
 _RESCUES = (1.0, 100.0, 1e4)
@@ -199,7 +199,9 @@ class Problem:
             gradient = np.einsum("rn,rckn->ckn", scaled, jacobian)
             at_gradient = _put(self._buffer_gradient, at_gradient, gradient)
             jacobian = jacobian * np.sqrt(2 * term.weight)
-            at = _products(jacobian.reshape(len(residual), 3 * k, n), self._buffer, at)
+            begin, at = at, _products(jacobian.reshape(len(residual), 3 * k, n), self._buffer, at)
+            if isinstance(term, EdgeTerm):
+                _stiffen_edges(self._buffer[begin:at].reshape(-1, n), term.edge_stiffness(residual))
         for name, term in self.constraints.items():
             residual, jacobian = term.linearize(gather(xt, term.stencil))
             constraints[name], jacobians[name] = residual, jacobian
@@ -327,3 +329,12 @@ def _products(jacobian: FloatArray, buffer: FloatArray, at: int) -> int:
             target += jacobian[k, i] * jacobian[k, i:]
         at += length
     return at
+
+
+def _stiffen_edges(products: FloatArray, stiffness: FloatArray) -> None:
+    """Add stiffness (n,) times [[1, -1], [-1, 1]] in each coordinate to the products (21,n) of edges."""
+    i, j = _pairs(6)
+    for axis in range(3):
+        a, b = 2 * axis, 2 * axis + 1
+        products[(i == a) & (j == a) | (i == b) & (j == b)] += stiffness
+        products[(i == a) & (j == b)] -= stiffness

@@ -7,7 +7,7 @@ x (3, k, n): coordinate, place in the stencil, stencil.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -33,6 +33,14 @@ class ResidualTerm(Protocol):
 
     def linearize(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Residual (r,n) and Jacobian (r,3,k,n)."""
+
+
+@runtime_checkable
+class EdgeTerm(ResidualTerm, Protocol):
+    """A term of edges (k = 2) with more than the Gauss-Newton Hessian: edge_stiffness · |difference|²/2."""
+
+    def edge_stiffness(self, residual: FloatArray) -> FloatArray:
+        """(n,), not negative, of a residual (1,n)."""
 
 
 @dataclass(frozen=True, eq=False)

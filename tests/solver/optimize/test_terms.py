@@ -228,6 +228,17 @@ def dense_hessian(term: Term, x: np.ndarray, weight: np.ndarray) -> np.ndarray:
     return total
 
 
+def stretched_strings(isometry: Term, x: np.ndarray) -> np.ndarray:
+    """The positive part of Σ 2 w r ∇²r with r = |e|² - l²: 4 w r for each coordinate of a stretched edge."""
+    total = np.zeros((x.size, x.size))
+    for (a, b), rest, weight in zip(isometry.stencil, isometry.rest_squared, isometry.weight, strict=True):
+        pull = 4 * weight * max(float(np.sum((x[b] - x[a]) ** 2)) - rest, 0.0)
+        for axis in range(3):
+            i, j = 3 * a + axis, 3 * b + axis
+            total[np.ix_([i, j], [i, j])] += pull * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    return total
+
+
 @pytest.mark.parametrize("state", STATES)
 def test_gradient_is_the_derivative_of_the_objective(
     net: solver.PiecewiseDog, problem: Problem, state: str
@@ -257,6 +268,7 @@ def test_matrix_is_the_dense_sum_over_all_stencils(
             expected += dense_hessian(term, x, np.full(len(term.stencil), stiffness))
         else:
             expected += dense_hessian(term, x, 2 * term.weight)
+    expected += stretched_strings(terms["isometry"], x)
     for term in bending(net, 1.0):
         expected += damping * dense_hessian(term, x, 2 * term.weight)
     model = problem.linearize(x, stiffness, shift, damping)
