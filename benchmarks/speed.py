@@ -22,7 +22,7 @@ from solver import Crease, CreasePattern, FoldModel, build_net
 RESOLUTIONS = (18, 27, 40, 59)
 #: Iterations in one call, as in the paper (section 7).
 PER_FRAME = 5
-PARTS = ("momentum", "assembly", "factor", "solve", "line search", "total")
+PARTS = ("assembly", "factor", "solve", "line search", "total")
 
 
 def arcs() -> CreasePattern:

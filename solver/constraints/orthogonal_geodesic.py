@@ -42,19 +42,34 @@ class StarAngles:
         return np.ones(len(self.stencil))
 
     def residual(self, x: FloatArray) -> FloatArray:
-        e = x[:, 1:] - x[:, :1]
-        return np.stack([_row(e[:, k], e[:, (k + 1) % 4], e[:, (k + 2) % 4]) for k in range(4)])
+        _, n, d = self._turn(x)
+        return np.asarray(d * _ahead(n, 2) - _ahead(d, 1) * n)
 
     def linearize(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        e = x[:, 1:] - x[:, :1]
-        residual = np.empty((4, x.shape[2]))
+        # Row k is _row of the edges k, k + 1, k + 2; all four at once, edges along the second axis.
+        e, n, d = self._turn(x)
+        n2, d1 = _ahead(n, 2), _ahead(d, 1)
+        e1, e2 = np.roll(e, -1, axis=1), np.roll(e, -2, axis=1)
+        g1 = e1 * n2 - e * (d1 / n)
+        g2 = e * n2 - e2 * n
+        g3 = e2 * (d / n2) - e1 * n
         jacobian = np.zeros((4, 3, 5, x.shape[2]))
         for k in range(4):
-            a, b, c = k, (k + 1) % 4, (k + 2) % 4
-            residual[k], g1, g2, g3 = _row_gradient(e[:, a], e[:, b], e[:, c])
-            jacobian[k, :, 1 + a], jacobian[k, :, 1 + b], jacobian[k, :, 1 + c] = g1, g2, g3
-            jacobian[k, :, 0] = -(g1 + g2 + g3)
-        return residual, jacobian
+            jacobian[k, :, 1 + k] = g1[:, k]
+            jacobian[k, :, 1 + (k + 1) % 4] = g2[:, k]
+            jacobian[k, :, 1 + (k + 2) % 4] = g3[:, k]
+        jacobian[:, :, 0] = -(g1 + g2 + g3).transpose(1, 0, 2)
+        return d * n2 - d1 * n, jacobian
+
+    def _turn(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Edges (3,4,n), their lengths (4,n), and the dot products (4,n) of each with the next."""
+        e = x[:, 1:] - x[:, :1]
+        return e, np.sqrt((e * e).sum(0)), (e * np.roll(e, -1, axis=1)).sum(0)
+
+
+def _ahead(values: FloatArray, steps: int) -> FloatArray:
+    """The values (4,n) of the edges so many steps on."""
+    return np.roll(values, -steps, axis=0)
 
 
 @dataclass(frozen=True, eq=False)

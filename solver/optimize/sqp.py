@@ -74,15 +74,15 @@ def sqp_step(problem: Problem, state: SqpState, eps: float) -> tuple[SqpState, S
     clock = [time.perf_counter()]
     x, momentum = state.x, state.momentum
     velocity = x - state.previous
-    if velocity.any():
+    moving = bool(velocity.any())
+    if moving:
         momentum += 1
-        ahead = x + min(_MOST_MOMENTUM, momentum / (momentum + 3)) * velocity
-        if merit(problem.evaluate(ahead)) <= _WORSE * merit(problem.evaluate(x)):
-            x = ahead
-        else:
-            momentum //= 3
-    clock.append(time.perf_counter())
+        x = x + min(_MOST_MOMENTUM, momentum / (momentum + 3)) * velocity
     model = problem.linearize(x, 1.0 / eps, _SHIFT, state.damping)
+    if moving and merit(model.evaluation) > _WORSE * merit(problem.evaluate(state.x)):
+        # Too far ahead: back to the shape itself.
+        x, momentum = state.x, momentum // 3
+        model = problem.linearize(x, 1.0 / eps, _SHIFT, state.damping)
     gradient = model.gradient + problem.transposed(model.jacobians, model.evaluation.constraint / eps)
     clock.append(time.perf_counter())
     problem.factorize(model)
@@ -118,7 +118,7 @@ def sqp_step(problem: Problem, state: SqpState, eps: float) -> tuple[SqpState, S
         length,
         backtracks,
         float(np.abs(after - state.x).max(initial=0.0)),
-        dict(zip(("momentum", "assembly", "factor", "solve", "line search"), spent.tolist(), strict=True)),
+        dict(zip(("assembly", "factor", "solve", "line search"), spent.tolist(), strict=True)),
     )
 
 
