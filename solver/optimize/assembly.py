@@ -159,6 +159,7 @@ class Problem:
             self._targets, self._weights = np.vstack(targets), np.concatenate(weights)
         self._transpose = self._matrix.T.tocsr()
         self._constant = constant
+        self._kept: tuple[tuple[float, float], FloatArray] | None = None
 
     # --- values ----------------------------------------------------------------------------------------
 
@@ -211,13 +212,18 @@ class Problem:
             at = _products((jacobian * np.sqrt(stiffness)).reshape(len(residual), 3 * k, n), self._buffer, at)
         evaluation = self._finish(x, objectives, constraints)
         values = self._scatter @ self._buffer
-        values += self._constant
-        values[self._diagonal] += shift
-        if damping:
-            values += damping * self._damping
+        values += self._constant_part(shift, damping)
         gradient = self._scatter_gradient @ self._buffer_gradient
         pull = 2 * (self._transpose @ (self._weights[:, None] * evaluation.linear))
         return Linearization(evaluation, gradient + pull.ravel(), values, jacobians)
+
+    def _constant_part(self, shift: float, damping: float) -> FloatArray:
+        """What linear terms, shift and damping add to the slots; kept while none of them changes."""
+        if self._kept is None or self._kept[0] != (shift, damping):
+            values = self._constant + damping * self._damping
+            values[self._diagonal] += shift
+            self._kept = (shift, damping), values
+        return self._kept[1]
 
     def factorize(self, model: Linearization) -> None:
         """Factorise a model's Hessian, with more on the diagonal when rounding has made it indefinite.
@@ -320,13 +326,11 @@ def _linear_products(term: LinearTerm) -> FloatArray:
 
 def _products(jacobian: FloatArray, buffer: FloatArray, at: int) -> int:
     """Write Σ_r J_ri J_rj for all i <= j of J (r,m,n) into the buffer; returns the next free place."""
-    r, m, n = jacobian.shape
+    _, m, n = jacobian.shape
     for i in range(m):
         length = (m - i) * n
         target = buffer[at : at + length].reshape(m - i, n)
-        np.multiply(jacobian[0, i], jacobian[0, i:], out=target)
-        for k in range(1, r):
-            target += jacobian[k, i] * jacobian[k, i:]
+        np.einsum("rn,rjn->jn", jacobian[:, i], jacobian[:, i:], out=target)
         at += length
     return at
 

@@ -13,6 +13,7 @@ differ from the textbook (docs/method.md has figures):
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,12 +38,16 @@ _WORSE = 1.5
 
 @dataclass(frozen=True, eq=False)
 class SqpState:
-    """x (V,3) net units, the shape before it; damping, parts of the bending metric; steps with momentum."""
+    """x (V,3) net units, the shape before it; damping, parts of the bending metric; steps with momentum.
+
+    evaluation: of the terms at x as they were when it was reached; None for a start.
+    """
 
     x: FloatArray
     previous: FloatArray
     damping: float = _LEAST_DAMPING
     momentum: int = 0
+    evaluation: Evaluation | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +84,7 @@ def sqp_step(problem: Problem, state: SqpState, eps: float) -> tuple[SqpState, S
         momentum += 1
         x = x + min(_MOST_MOMENTUM, momentum / (momentum + 3)) * velocity
     model = problem.linearize(x, 1.0 / eps, _SHIFT, state.damping)
-    if moving and merit(model.evaluation) > _WORSE * merit(problem.evaluate(state.x)):
+    if moving and not _near_enough(problem, state, merit, merit(model.evaluation)):
         # Too far ahead: back to the shape itself.
         x, momentum = state.x, momentum // 3
         model = problem.linearize(x, 1.0 / eps, _SHIFT, state.damping)
@@ -112,7 +117,7 @@ def sqp_step(problem: Problem, state: SqpState, eps: float) -> tuple[SqpState, S
     after = x + length * move
     clock.append(time.perf_counter())
     spent = np.diff(clock)
-    return SqpState(after, state.x, damping, momentum), StepReport(
+    return SqpState(after, state.x, damping, momentum, accepted), StepReport(
         accepted,
         merit(accepted),
         length,
@@ -120,6 +125,16 @@ def sqp_step(problem: Problem, state: SqpState, eps: float) -> tuple[SqpState, S
         float(np.abs(after - state.x).max(initial=0.0)),
         dict(zip(("assembly", "factor", "solve", "line search"), spent.tolist(), strict=True)),
     )
+
+
+def _near_enough(
+    problem: Problem, state: SqpState, merit: Callable[[Evaluation], float], ahead: float
+) -> bool:
+    """Whether an extrapolation of merit ``ahead`` is not much worse than the shape it starts from."""
+    if state.evaluation is not None and ahead <= _WORSE * merit(state.evaluation):
+        return True
+    # The targets may have moved since: only now is a new evaluation worth its time.
+    return ahead <= _WORSE * merit(problem.evaluate(state.x))
 
 
 def projection_step(problem: Problem, x: FloatArray, eps: float) -> tuple[FloatArray, float]:
