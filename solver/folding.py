@@ -214,7 +214,8 @@ class FoldModel:
             for name, seconds in step.seconds.items():
                 spent[name] = spent.get(name, 0.0) + seconds
         spent["total"] = time.perf_counter() - begin
-        evaluation = problem.evaluate(self._state.x)
+        # The last step has evaluated the shape already, unless polishing has moved it since.
+        evaluation = steps[-1].evaluation if steps and not self._polished else problem.evaluate(self._state.x)
         return SqpReport(
             self.status,
             done,

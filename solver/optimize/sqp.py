@@ -127,9 +127,7 @@ def sqp_step(problem: Problem, state: SqpState, eps: float) -> tuple[SqpState, S
     )
 
 
-def _near_enough(
-    problem: Problem, state: SqpState, merit: Callable[[Evaluation], float], ahead: float
-) -> bool:
+def _near_enough(problem: Problem, state: SqpState, merit: Callable[[Evaluation], float], ahead: float) -> bool:
     """Whether an extrapolation of merit ``ahead`` is not much worse than the shape it starts from."""
     if state.evaluation is not None and ahead <= _WORSE * merit(state.evaluation):
         return True
