@@ -21,8 +21,8 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFilter
 
 import solver
+from benchmarks.marked import write_between
 from solver.arrays import FloatArray
-from solver.files.atomic import write_whole
 from solver.fold import fold_angle_quantiles
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -30,7 +30,8 @@ FOLDER = ROOT / "sample_patterns"
 PICTURES = FOLDER / "pictures"
 #: Files that hold the table between these lines.
 WITH_TABLE = (ROOT / "README.md", FOLDER / "README.md")
-BEGIN, END = "<!-- samples:begin -->", "<!-- samples:end -->"
+#: Name of the marked part of both READMEs.
+MARK = "samples"
 HEADER = (
     "sample", "folded by", "vertices", "iterations", "seconds", "mean stretch", "max stretch",
     "fold angle 10 / 50 / 90 %", "folded", "DOG residual", "status",
@@ -104,16 +105,6 @@ def markdown(rows: Sequence[Row]) -> str:
     lines = [HEADER, ("---",) * 2 + ("--:",) * 5 + ("---",) + ("--:",) * 2 + ("---",)]
     lines += [row.cells() for row in rows]
     return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
-
-
-def write_between(path: Path, text: str) -> None:
-    """Put ``text`` between the markers of a file. Raises ValueError when it has no such markers."""
-    old = path.read_text(encoding="utf-8")
-    head, begin, rest = old.partition(BEGIN)
-    _, end, tail = rest.partition(END)
-    if not (begin and end):
-        raise ValueError(f"{path} has no lines {BEGIN} and {END}")
-    write_whole(path, f"{head}{BEGIN}\n{text}\n{END}{tail}")
 
 
 # --- pictures -------------------------------------------------------------------------------------------
@@ -254,7 +245,7 @@ def main() -> int:
             (PICTURES / f"{row.name}.png").write_bytes(image)
     if args.write and not args.only:
         for path in WITH_TABLE:
-            write_between(path, markdown(rows))
+            write_between(path, MARK, markdown(rows))
     return 0 if all(row.ok for row in rows) else 1
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import os
+from pathlib import Path
 
 os.environ.setdefault(
     "OPENBLAS_NUM_THREADS", "1"
@@ -16,6 +17,7 @@ os.environ.setdefault(
 import numpy as np
 
 from benchmarks.linear_system import time_splu
+from benchmarks.marked import write_between
 from solver import Crease, CreasePattern, FoldModel, build_net
 
 #: Resolution of the square sheet for about 500, 1,000, 2,000 and 4,000 vertices.
@@ -46,14 +48,29 @@ def measure_size(resolution: int, frames: int) -> tuple[int, dict[str, float], f
     return len(net.rest), medians, 1e3 * time_splu(problem.rows, problem.columns, values, right)
 
 
+def markdown(rows: list[tuple[int, dict[str, float], float]]) -> str:
+    """The table for the README."""
+    lines = ["| vertices | " + " | ".join(PARTS) + " | splu instead of factor and solve |"]
+    lines.append("| " + " | ".join(["--:"] * (len(PARTS) + 2)) + " |")
+    for count, medians, splu in rows:
+        cells = [f"{count:,}", *(f"{medians[part]:.1f}" for part in PARTS), f"{splu:.0f}"]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--frames", type=int, default=12, help="calls of five iterations (default 12)")
+    parser.add_argument("--write", action="store_true", help="put the table into README.md")
     args = parser.parse_args()
     print(f"{'vertices':>9}" + "".join(f"{part:>13}" for part in PARTS) + f"{'splu instead':>14}   (ms, medians)")
+    rows = []
     for resolution in RESOLUTIONS:
         count, medians, splu = measure_size(resolution, args.frames)
+        rows.append((count, medians, splu))
         print(f"{count:9d}" + "".join(f"{medians[part]:13.2f}" for part in PARTS) + f"{splu:14.1f}", flush=True)
+    if args.write:
+        write_between(Path(__file__).resolve().parents[1] / "README.md", "speed", markdown(rows))
 
 
 if __name__ == "__main__":
