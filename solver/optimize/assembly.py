@@ -70,6 +70,8 @@ class Problem:
             else:
                 self.nonlinear[term.name] = term
         self.constraints: dict[str, ResidualTerm] = {c.name: c for c in constraints if len(c.stencil)}
+        # Looked up once: asking a protocol at every step costs more than the stiffness itself.
+        self._edge_terms = {name: term for name, term in self.nonlinear.items() if isinstance(term, EdgeTerm)}
         self._plan(plane)
         self._stack_linear()
         self._damping = np.zeros(len(self.rows))
@@ -96,6 +98,8 @@ class Problem:
             elif name in self.nonlinear:
                 assert not isinstance(term, LinearTerm)
                 self.nonlinear[name] = term
+                if isinstance(term, EdgeTerm):
+                    self._edge_terms[name] = term
         if restack:
             self._stack_linear()
 
@@ -201,8 +205,9 @@ class Problem:
             at_gradient = _put(self._buffer_gradient, at_gradient, gradient)
             jacobian = jacobian * np.sqrt(2 * term.weight)
             begin, at = at, _products(jacobian.reshape(len(residual), 3 * k, n), self._buffer, at)
-            if isinstance(term, EdgeTerm):
-                _stiffen_edges(self._buffer[begin:at].reshape(-1, n), term.edge_stiffness(residual))
+            if name in self._edge_terms:
+                pull = self._edge_terms[name].edge_stiffness(residual)
+                _stiffen_edges(self._buffer[begin:at].reshape(-1, n), pull)
         for name, term in self.constraints.items():
             residual, jacobian = term.linearize(gather(xt, term.stencil))
             constraints[name], jacobians[name] = residual, jacobian
@@ -214,8 +219,8 @@ class Problem:
         values = self._scatter @ self._buffer
         values += self._constant_part(shift, damping)
         gradient = self._scatter_gradient @ self._buffer_gradient
-        pull = 2 * (self._transpose @ (self._weights[:, None] * evaluation.linear))
-        return Linearization(evaluation, gradient + pull.ravel(), values, jacobians)
+        linear = 2 * (self._transpose @ (self._weights[:, None] * evaluation.linear))
+        return Linearization(evaluation, gradient + linear.ravel(), values, jacobians)
 
     def _constant_part(self, shift: float, damping: float) -> FloatArray:
         """What linear terms, shift and damping add to the slots; kept while none of them changes."""
@@ -247,23 +252,13 @@ class Problem:
         self._buffer_gradient[:] = 0.0
         at_gradient = sum(3 * term.stencil.size for term in self.nonlinear.values())
         at = 0
-        for name, term in self.constraints.items():
+        for name in self.constraints:
             jacobian = jacobians[name]
             r, n = jacobian.shape[0], jacobian.shape[-1]
             part = multipliers[at : at + r * n].reshape(r, n)
             at += r * n
             at_gradient = _put(self._buffer_gradient, at_gradient, np.einsum("rn,rckn->ckn", part, jacobian))
-            del term
         return np.asarray(self._scatter_gradient @ self._buffer_gradient)
-
-    def directional(self, jacobians: Mapping[str, FloatArray], step: FloatArray) -> FloatArray:
-        """J d (m,) of the constraints for a step d (V,3)."""
-        dt = np.ascontiguousarray(step.T)
-        rows = [
-            np.einsum("rckn,ckn->rn", jacobians[name], gather(dt, term.stencil)).ravel()
-            for name, term in self.constraints.items()
-        ]
-        return np.concatenate(rows) if rows else np.zeros(0)
 
     def objective_by_term(self, evaluation: Evaluation) -> dict[str, float]:
         """The objective's parts by the names of the terms."""
@@ -337,8 +332,22 @@ def _products(jacobian: FloatArray, buffer: FloatArray, at: int) -> int:
 
 def _stiffen_edges(products: FloatArray, stiffness: FloatArray) -> None:
     """Add stiffness (n,) times [[1, -1], [-1, 1]] in each coordinate to the products (21,n) of edges."""
+    for row, sign in _EDGE_ROWS:
+        if sign > 0:
+            products[row] += stiffness
+        else:
+            products[row] -= stiffness
+
+
+def _edge_rows() -> list[tuple[int, int]]:
+    """Rows of the products of an edge that hold (a, a), (a, b) and (b, b) of each coordinate, and their signs."""
     i, j = _pairs(6)
-    for axis in range(3):
-        a, b = 2 * axis, 2 * axis + 1
-        products[(i == a) & (j == a) | (i == b) & (j == b)] += stiffness
-        products[(i == a) & (j == b)] -= stiffness
+    place = {pair: row for row, pair in enumerate(zip(i.tolist(), j.tolist(), strict=True))}
+    return [
+        (place[p, q], 1 if p == q else -1)
+        for axis in range(3)
+        for p, q in ((2 * axis, 2 * axis), (2 * axis, 2 * axis + 1), (2 * axis + 1, 2 * axis + 1))
+    ]
+
+
+_EDGE_ROWS = _edge_rows()
