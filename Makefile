@@ -7,7 +7,7 @@ SHELL := /bin/bash
 # The Blender that demo and test use, and all that test-all uses.
 BLENDER := 5.0.1
 BLENDERS := 4.2.23 4.5.15 5.0.1 5.2.3
-DEMO := sample_patterns/mirrored_arcs.svg
+DEMO := sample_patterns/corner_arcs.svg
 
 help:
 	@echo "make demo      fold and render a sample: out/demo.png, out/demo.blend, out/demo.json"

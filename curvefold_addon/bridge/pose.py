@@ -28,7 +28,7 @@ _ASPECT = 4.0 / 3.0
 #: What makes a good picture: paper fills the frame, both sides are seen (a share of the smaller one above the
 #: limit gains nothing more), light and shade differ, it is bright, and the sheet lies rather than stands,
 #: with the front up if it can.
-_FILLED, _BOTH_SIDES, _SHADING, _BRIGHT, _LYING, _FRONT_UP = 1.2, 8.0, 3.0, 0.3, 0.3, 0.6
+_FILLED, _BOTH_SIDES, _SHADING, _BRIGHT, _LYING, _FRONT_UP = 1.2, 8.0, 3.0, 0.3, 3.0, 0.6
 _ENOUGH_OF_A_SIDE = 0.2
 
 Array = NDArray[np.float64]
