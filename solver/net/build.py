@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import shapely
 from shapely import Polygon
@@ -121,8 +123,6 @@ def _assemble(
 
 def _in_net_units(net: PiecewiseDog, mean: float) -> PiecewiseDog:
     """The same net with lengths divided by ``mean`` (cell lengths in, net units out)."""
-    from dataclasses import replace
-
     points = net.crease_points
     return replace(
         net,
