@@ -24,11 +24,15 @@ _MAX_BYTES = 16 * 1024 * 1024
 class Handle:
     """A point of the sheet and its target. at (x, y) on the flat sheet, target (X, Y, Z); drawing units.
 
-    Raises HandleError when a number is not finite.
+    axes: along which of X, Y and Z it pulls; it is free along the others. strength: how hard it pulls, in parts
+    of a usual handle's weight.
+    Raises HandleError when a number is not finite, no axis is left, or the strength is not positive.
     """
 
     at: tuple[float, float]
     target: tuple[float, float, float]
+    axes: tuple[bool, bool, bool] = (True, True, True)
+    strength: float = 1.0
 
     def __post_init__(self) -> None:
         for name, values, count in (("at", self.at, 2), ("target", self.target, 3)):
@@ -39,6 +43,14 @@ class Handle:
             if len(numbers) != count or not all(math.isfinite(v) for v in numbers):
                 raise HandleError(f"{name!r} must be {count} finite numbers", element="handle")
             object.__setattr__(self, name, numbers)
+        if len(self.axes) != 3 or not all(isinstance(axis, bool) for axis in self.axes):
+            raise HandleError("'axes' must be three of true and false", element="handle")
+        object.__setattr__(self, "axes", tuple(self.axes))
+        if not any(self.axes):
+            raise HandleError("'axes' leaves no axis to pull along", element="handle")
+        strength = self.strength
+        if isinstance(strength, bool) or not isinstance(strength, int | float) or not 0 < strength < math.inf:
+            raise HandleError("'strength' must be a positive number", element="handle")
 
 
 @dataclass(frozen=True)
@@ -116,7 +128,9 @@ class FoldDescription:
 
 
 def parse_handles(data: Any) -> tuple[Handle, ...]:
-    """Handles from JSON: [{"at": [x, y], "target": [X, Y, Z]}, …]. Raises HandleError naming the entry."""
+    """Handles from JSON: [{"at": [x, y], "target": [X, Y, Z]}, …], each with "axes" and "strength" if they differ
+    from a usual handle's. Raises HandleError naming the entry.
+    """
     if not isinstance(data, list):
         raise HandleError("handles must be a list of objects with 'at' and 'target'")
     result = []
@@ -124,12 +138,18 @@ def parse_handles(data: Any) -> tuple[Handle, ...]:
         element = f"handle {k + 1}"
         if not isinstance(entry, dict) or not {"at", "target"} <= set(entry):
             raise HandleError("a handle needs 'at' and 'target'", element=element)
+        unknown = sorted(set(entry) - {"at", "target", "axes", "strength"})
+        if unknown:
+            raise HandleError(f"unknown setting {unknown[0]!r}", element=element)
         try:
-            result.append(Handle(at=tuple(entry["at"]), target=tuple(entry["target"])))
+            extra = {"axes": tuple(entry["axes"])} if "axes" in entry else {}
+            result.append(
+                Handle(tuple(entry["at"]), tuple(entry["target"]), strength=entry.get("strength", 1.0), **extra)
+            )
         except HandleError as error:
             raise HandleError(error.message, element=element) from None
         except TypeError:
-            raise HandleError("'at' and 'target' must be lists of numbers", element=element) from None
+            raise HandleError("'at', 'target' and 'axes' must be lists", element=element) from None
     return tuple(result)
 
 

@@ -22,7 +22,7 @@ from .net.piecewise_dog import PiecewiseDog
 from .objectives.bending import bending
 from .objectives.continuity import continuity
 from .objectives.fold_condition import FoldCondition, fold_condition
-from .objectives.handles import handles
+from .objectives.handles import AxisHandles, handles
 from .objectives.isometry import isometry
 from .optimize.assembly import Problem
 from .optimize.sqp import StepReport, at_rest, projection_step, sqp_step
@@ -116,6 +116,8 @@ class FoldModel:
         self._state = at_rest(x)
         self._handles: tuple[Handle, ...] = ()
         self._points: tuple[IntArray, FloatArray] = (np.zeros((0, 4), dtype=np.int64), np.zeros((0, 4)))
+        self._axes = np.ones((0, 3), dtype=bool)  # of the drawing, along which each handle pulls
+        self._strengths = np.zeros(0)
         self._targets = np.zeros((0, 3))  # where the handles are drawn to in the end, net units
         self._paths = np.zeros((0, 3))  # where they are drawn to now
         self._angle: float | None = None
@@ -142,7 +144,7 @@ class FoldModel:
     @property
     def worst_handle(self) -> int:
         """Index of the handle that is farthest from its target. Raises ValueError when there is none."""
-        return int(np.argmax(np.linalg.norm(self._handle_places() - self._targets, axis=1)))
+        return int(np.argmax(self._handle_gaps()))
 
     def set_assignments(self, letters: Sequence[str]) -> None:
         """FOLD letters, one a crease: M and V decide the side a flat sheet starts to fold to, others are free.
@@ -171,8 +173,14 @@ class FoldModel:
         now = np.einsum("hk,hkc->hc", weights, self._state.x[vertices])
         same = [next((j for j, old in enumerate(self._handles) if old.at == new.at), None) for new in handles]
         paths = np.array([now[k] if j is None else self._paths[j] for k, j in enumerate(same)])
-        if not (np.array_equal(vertices, self._points[0]) and np.array_equal(weights, self._points[1])):
+        axes = np.array([h.axes for h in handles], dtype=bool).reshape(-1, 3)
+        if not (
+            np.array_equal(vertices, self._points[0])
+            and np.array_equal(weights, self._points[1])
+            and np.array_equal(axes.all(axis=1), self._axes.all(axis=1))
+        ):
             self._problem = None
+        self._axes, self._strengths = axes, np.array([h.strength for h in handles])
         self._handles, self._points = handles, (vertices, weights)
         self._targets, self._paths = targets, paths.reshape(-1, 3)
         self._wake()
@@ -236,7 +244,7 @@ class FoldModel:
         if self._pulled:
             self._pull, self._pulled = 1.0, 0
             if self._problem is not None:
-                self._problem.replace({"handles": self._handle_term()})
+                self._problem.replace(self._handle_terms())
 
     def _prepared(self) -> Problem:
         if self._problem is None:
@@ -244,8 +252,7 @@ class FoldModel:
             objectives: list[ResidualTerm | LinearTerm]
             objectives = [*bending(net, weights.bending), isometry(net, weights.isometry),
                           continuity(net, weights.continuity)]  # fmt: skip
-            if len(self._handles):
-                objectives.append(self._handle_term())
+            objectives.extend(self._handle_terms().values())
             if weights.fold_condition > 0:
                 objectives.append(self._fold_condition())
             if self._angle is not None:
@@ -264,7 +271,7 @@ class FoldModel:
         return self._problem
 
     def _asks_for_a_move(self) -> bool:
-        return bool(self._angle) or bool(np.abs(self._targets - self._handle_places()).max(initial=0.0) > 1e-9)
+        return bool(self._angle) or bool(self._handle_gaps().max(initial=0.0) > 1e-9)
 
     def _present_angle(self) -> float:
         angles = measure(self.net, self.positions).fold_angle
@@ -275,8 +282,7 @@ class FoldModel:
         return np.einsum("hk,hkc->hc", weights, self._state.x[vertices])
 
     def _handle_error(self) -> float:
-        gaps = np.linalg.norm(self._handle_places() - self._targets, axis=1)
-        return float(gaps.max(initial=0.0)) * self.net.frame.unit
+        return float(self._handle_gaps().max(initial=0.0)) * self.net.frame.unit
 
     def _move_targets(self, problem: Problem) -> bool:
         """Bring the targets of this iteration a step nearer; whether they are still on their way."""
@@ -287,7 +293,7 @@ class FoldModel:
         if (distance > 0).any():
             share = np.minimum(1.0, HANDLE_RATE / np.maximum(distance, 1e-300))
             self._paths = np.where((share >= 1.0)[:, None], self._targets, self._paths + share[:, None] * gap)
-            changed["handles"] = self._handle_term()
+            changed.update(self._handle_terms())
             moving = True
         if self._angle is not None and self._angle_now != self._angle:
             turn = np.clip(self._angle - self._angle_now, -ANGLE_RATE, ANGLE_RATE)
@@ -326,7 +332,7 @@ class FoldModel:
             changed["fold condition"] = self._stiffer_condition()
         if self._handles_lag():
             self._pull, self._pulled = self._pull * _STIFFER, self._pulled + 1
-            changed["handles"] = self._handle_term()
+            changed.update(self._handle_terms())
         problem.replace(changed)
         return bool(changed)
 
@@ -353,11 +359,27 @@ class FoldModel:
         """Whether handles stay off their targets though the paper is far from stretched: bending holds them."""
         if not len(self._handles) or self._pulled >= _STIFFENINGS:
             return False
-        gap = np.linalg.norm(self._handle_places() - self._targets, axis=1).max()
-        return bool(gap > _CLOSE) and mean_stretch(self.net, self._state.x) <= 0.5 * MEAN_BUDGET
+        return (
+            bool(self._handle_gaps().max() > _CLOSE) and mean_stretch(self.net, self._state.x) <= 0.5 * MEAN_BUDGET
+        )
 
-    def _handle_term(self) -> LinearTerm:
-        return handles(*self._points, self._paths, self.weights.handles * self._pull)
+    def _handle_terms(self) -> dict[str, ResidualTerm | LinearTerm]:
+        vertices, weights = self._points
+        stiffness = self.weights.handles * self._pull * self._strengths
+        whole = self._axes.all(axis=1)
+        part = ~whole
+        terms: list[ResidualTerm | LinearTerm] = []
+        if whole.any():
+            terms.append(handles(vertices[whole], weights[whole], self._paths[whole], stiffness[whole]))
+        if part.any():
+            axes = self.net.frame.axes()[:, None, :] * self._axes[part].T[:, :, None]
+            terms.append(AxisHandles(vertices[part], weights[part], self._paths[part], axes, stiffness[part]))
+        return {term.name: term for term in terms}
+
+    def _handle_gaps(self) -> FloatArray:
+        """(H,) distances of the handles from their targets along the axes they pull along, net units."""
+        gaps = (self._handle_places() - self._targets) @ self.net.frame.axes().T
+        return np.asarray(np.linalg.norm(gaps * self._axes, axis=1))
 
     def _fold_condition(self) -> FoldCondition:
         return fold_condition(self.net, self.weights.fold_condition * self._condition)
@@ -385,13 +407,16 @@ def _without_doubles(handles: Sequence[Handle], unit: float) -> list[int]:
     """
     kept: list[int] = []
     for k, handle in enumerate(handles):
-        first = next((j for j in kept if math.dist(handles[j].at, handle.at) <= _SAME_POINT * unit), None)
-        if first is None:
+        here = [j for j in kept if math.dist(handles[j].at, handle.at) <= _SAME_POINT * unit]
+        for j in here:
+            other = handles[j]
+            shared = [a for a in range(3) if handle.axes[a] and other.axes[a]]
+            if any(handle.target[a] != other.target[a] for a in shared):
+                raise HandleError(
+                    f"it lies on the same point as handle {j + 1} but has another target",
+                    element=f"handle {k + 1}",
+                    place=handle.at,
+                )
+        if not any(handles[j].axes == handle.axes for j in here):
             kept.append(k)
-        elif handles[first].target != handle.target:
-            raise HandleError(
-                f"it lies on the same point as handle {first + 1} but has another target",
-                element=f"handle {k + 1}",
-                place=handle.at,
-            )
     return kept

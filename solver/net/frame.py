@@ -41,6 +41,12 @@ class NetFrame:
         result[:, :2] = result[:, :2] @ self._turn().T + np.asarray(self.origin)
         return result
 
+    def axes(self) -> FloatArray:
+        """(3,3) the drawing's x, y and z axes, one a row, in net coordinates."""
+        result = np.eye(3)
+        result[:2, :2] = self._turn()
+        return result
+
     def scaled(self, factor: float) -> NetFrame:
         """The frame whose unit is ``factor`` times as long."""
         return NetFrame(self.origin, self.angle, self.unit * factor)

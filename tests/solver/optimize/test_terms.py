@@ -18,7 +18,7 @@ from solver.objectives.bending import bending
 from solver.objectives.continuity import continuity
 from solver.objectives.fold_angle import driven_points, fold_angle
 from solver.objectives.fold_condition import fold_condition
-from solver.objectives.handles import handles
+from solver.objectives.handles import AxisHandles, handles
 from solver.objectives.isometry import isometry
 from solver.optimize.assembly import Problem
 from solver.optimize.term import LinearTerm, ResidualTerm, gather
@@ -34,6 +34,7 @@ NAMES = (
     "isometry",
     "continuity",
     "handles",
+    "handles on axes",
     "fold condition",
     "fold angle",
     "star angles",
@@ -46,12 +47,18 @@ def terms_by_module(net: solver.PiecewiseDog) -> dict[str, list[Term]]:
     located = [net.locate(place) for place in PLACES]
     targets = np.random.default_rng(1).normal(size=(len(PLACES), 3))
     points = np.array([v for v, _ in located]), np.array([w for _, w in located])
+    # Slanting axes; the first handle is free along one of them.
+    axes = np.linalg.qr(np.random.default_rng(2).normal(size=(len(PLACES), 3, 3)))[0].transpose(1, 0, 2)
+    axes[2, 0] = 0.0
     angles = np.linspace(20.0, 140.0, len(driven_points(net)))
     return {
         "solver.objectives.bending": list(bending(net, 1.3)),
         "solver.objectives.isometry": [isometry(net, 20000.0)],
         "solver.objectives.continuity": [continuity(net, 1e4)],
-        "solver.objectives.handles": [handles(*points, targets, 5.0)],
+        "solver.objectives.handles": [
+            handles(*points, targets, np.full(len(PLACES), 5.0)),
+            AxisHandles(*points, targets, axes, np.full(len(PLACES), 3.0)),
+        ],
         "solver.objectives.fold_condition": [fold_condition(net, 0.7)],
         "solver.objectives.fold_angle": [fold_angle(net, angles, 400.0)],
         "solver.constraints.orthogonal_geodesic": [StarAngles(net.stars), LinkAngles(net.links)],
@@ -140,7 +147,7 @@ def test_jacobian_is_the_derivative_of_the_residual(
     assert np.abs(jacobian - expected).max() < 1e-6 * max(scale, 1.0)
 
 
-@pytest.mark.parametrize("name", [n for n in NAMES if n not in ("handles", "fold angle")])
+@pytest.mark.parametrize("name", [n for n in NAMES if n not in ("handles", "handles on axes", "fold angle")])
 def test_a_flat_sheet_satisfies_every_term_that_asks_for_no_move(
     net: solver.PiecewiseDog, terms: dict[str, Term], name: str
 ) -> None:
@@ -148,7 +155,7 @@ def test_a_flat_sheet_satisfies_every_term_that_asks_for_no_move(
     assert np.abs(terms[name].residual(gather(x, terms[name].stencil))).max() < 1e-7
 
 
-@pytest.mark.parametrize("name", [n for n in NAMES if n != "handles"])
+@pytest.mark.parametrize("name", [n for n in NAMES if not n.startswith("handles")])
 def test_a_term_does_not_feel_a_rigid_motion(net: solver.PiecewiseDog, terms: dict[str, Term], name: str) -> None:
     term, x = terms[name], shape(net, "random")
     turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
