@@ -7,7 +7,14 @@
 or step by step: ``build_net``, ``FoldModel``, ``measure``.
 """
 
-from .description import FoldDescription, Handle, Weights, read_handles
+from .controls.amount import Amount
+from .controls.angle import Angle
+from .controls.curve import Curve
+from .controls.glue import Glue
+from .controls.keep import Keep
+from .controls.pair import Pair
+from .controls.side import Side
+from .description import FoldDescription, Handle, Weights, read_description, read_handles
 from .errors import (
     CurvefoldError,
     DescriptionError,
@@ -25,31 +32,49 @@ from .net.piecewise_dog import PiecewiseDog
 from .net.render_map import RenderMap
 from .pattern.crease_pattern import Crease, CreasePattern
 from .pattern.reading import read_pattern
+from .rulings import GaussImage, RulingKind, Rulings, gauss_image, rulings
+from .verify import Fault, Verification, verify
 
 __all__ = [
+    "Amount",
+    "Angle",
     "Crease",
     "CreasePattern",
+    "Curve",
     "CurvefoldError",
     "DescriptionError",
+    "Fault",
     "FoldDescription",
     "FoldModel",
     "FoldResult",
+    "GaussImage",
+    "Glue",
     "Handle",
     "HandleError",
+    "Keep",
     "Measurement",
     "NetError",
     "Outcome",
+    "Pair",
     "PatternError",
     "PiecewiseDog",
     "ReadError",
     "RenderMap",
+    "RulingKind",
+    "Rulings",
+    "Side",
     "SqpReport",
     "Status",
+    "Verification",
     "Weights",
     "build_net",
     "fold",
+    "gauss_image",
     "measure",
+    "read_description",
     "read_handles",
     "read_pattern",
+    "rulings",
+    "verify",
     "write_results",
 ]

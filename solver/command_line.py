@@ -5,10 +5,11 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
-from .description import FoldDescription, read_handles
+from .description import FoldDescription, read_description, read_handles
 from .errors import CurvefoldError
 from .files.results import write_results
 from .fold import FoldResult, fold, in_words
@@ -27,8 +28,13 @@ def add_fold_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of ``fold``, without the drawing's and the output's own."""
     default = FoldDescription()
     parser.add_argument(
-        "--resolution", type=int, default=default.resolution, metavar="N",
-        help="quads along the sheet's longer side (default %(default)s)",
+        "--description", metavar="FILE.json",
+        help="a whole fold description with handles, weights and controls, as report.json has it under "
+        "'description'; the other options go before it",
+    )  # fmt: skip
+    parser.add_argument(
+        "--resolution", type=int, default=None, metavar="N",
+        help=f"quads along the sheet's longer side (default {default.resolution})",
     )  # fmt: skip
     parser.add_argument(
         "--handles", metavar="FILE.json",
@@ -39,16 +45,23 @@ def add_fold_arguments(parser: argparse.ArgumentParser) -> None:
         help="fold every crease to this angle (default 60 without handles, no drive with them)",
     )  # fmt: skip
     parser.add_argument(
-        "--assignments", choices=("free", "bind"), default=default.assignments,
-        help="whether the drawing's mountains and valleys bind the fold (default %(default)s)",
+        "--assignments", choices=("free", "bind"), default=None,
+        help=f"whether the drawing's mountains and valleys bind the fold (default {default.assignments})",
     )  # fmt: skip
 
 
 def description_of(args: argparse.Namespace) -> FoldDescription:
-    """What the arguments ask for. Raises CurvefoldError on a bad handle file or number."""
-    handles = read_handles(args.handles) if args.handles else ()
-    angle = args.angle if args.angle is not None or handles else FoldDescription().angle
-    return FoldDescription(resolution=args.resolution, angle=angle, handles=handles, assignments=args.assignments)
+    """What the arguments ask for. Raises CurvefoldError on a bad file or number."""
+    told = read_description(args.description) if args.description else FoldDescription()
+    given: dict[str, Any] = {}
+    if args.handles:
+        given["handles"] = read_handles(args.handles)
+        if not args.description:
+            given["angle"] = None
+    for name in ("resolution", "angle", "assignments"):
+        if getattr(args, name) is not None:
+            given[name] = getattr(args, name)
+    return replace(told, **given)
 
 
 def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | None = None) -> int:
@@ -62,7 +75,7 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
         try:
             result = fold(pattern, description, _progress(stream))
         except CurvefoldError as error:
-            source = args.handles if "handle" in (error.where.element or "") and args.handles else args.pattern
+            source = _source(args, error.where.element or "")
             raise error.in_file(str(source)) if error.where.file is None else error from None
         folder = Path(args.out)
         write_results(result, folder)
@@ -75,6 +88,15 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
         print(f"note: {note}", file=stream)
     print(result.summary(), file=stream)
     return REACHED if result.status.ok else NOT_REACHED
+
+
+def _source(args: argparse.Namespace, element: str) -> str:
+    """The file that an element of an error comes from."""
+    if "handle" in element and args.handles:
+        return str(args.handles)
+    if args.description and ("handle" in element or "control" in element):
+        return str(args.description)
+    return str(args.pattern)
 
 
 def _progress(stream: TextIO) -> Callable[[int, SqpReport], None]:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
+from .controls.control import Control
+from .controls.registry import control_to_json, controls_from_json
 from .errors import DescriptionError, HandleError
 
 #: Version of the JSON written by ``FoldDescription.to_json``.
@@ -16,7 +18,7 @@ FORMAT_VERSION = 1
 RESOLUTIONS = (4, 1000)
 #: More iterations than any fold needs.
 MAX_ITERATIONS = 1_000_000
-#: Handle files larger than this are refused before they are parsed, bytes.
+#: JSON files larger than this are refused before they are parsed, bytes.
 _MAX_BYTES = 16 * 1024 * 1024
 
 
@@ -66,6 +68,10 @@ class Weights:
     handles: float = 5.0
     fold_angle: float = 100.0
     fold_condition: float = 1.0
+    sides: float = 100.0
+    pairs: float = 5.0
+    patches: float = 1000.0
+    curves: float = 50.0
 
     def __post_init__(self) -> None:
         for entry in fields(self):
@@ -79,7 +85,7 @@ class FoldDescription:
     """resolution: quads along the longer side. angle: degrees every crease is driven to, None for no drive.
 
     handles; assignments: "free" (the fold finds its own) or "bind" (those of the drawing hold); weights;
-    max_iterations: where a fold that does not settle ends.
+    max_iterations: where a fold that does not settle ends; controls: all else that is asked (``controls/``).
     """
 
     resolution: int = 32
@@ -88,6 +94,7 @@ class FoldDescription:
     assignments: str = "free"
     weights: Weights = field(default_factory=Weights)
     max_iterations: int = 1500
+    controls: tuple[Control, ...] = ()
 
     def __post_init__(self) -> None:
         if self.angle is not None and not (
@@ -101,10 +108,12 @@ class FoldDescription:
         if self.assignments not in ("free", "bind"):
             raise DescriptionError("assignments must be 'free' or 'bind'", element="assignments")
         object.__setattr__(self, "handles", tuple(self.handles))
+        object.__setattr__(self, "controls", tuple(self.controls))
 
     def to_json(self) -> dict[str, Any]:
         """A JSON object; ``from_json`` reads it back."""
-        return {"format": FORMAT_VERSION, **asdict(self)}
+        data = asdict(replace(self, controls=()))
+        return {"format": FORMAT_VERSION, **data, "controls": [control_to_json(c) for c in self.controls]}
 
     @staticmethod
     def from_json(data: Any) -> FoldDescription:
@@ -119,6 +128,7 @@ class FoldDescription:
             raise DescriptionError(f"format {data.get('format')!r} is not known", element="format")
         values = {name: data[name] for name in known if name in data}
         values["handles"] = parse_handles(data.get("handles", []))
+        values["controls"] = controls_from_json(data.get("controls", []))
         if "weights" in data:
             try:
                 values["weights"] = Weights(**data["weights"])
@@ -155,16 +165,28 @@ def parse_handles(data: Any) -> tuple[Handle, ...]:
 
 def read_handles(path: str | Path) -> tuple[Handle, ...]:
     """Handles from a JSON file. Raises HandleError naming the file and the entry."""
+    try:
+        return parse_handles(_read_json(path, HandleError))
+    except HandleError as error:
+        raise error if error.where.file else error.in_file(str(path)) from None
+
+
+def read_description(path: str | Path) -> FoldDescription:
+    """A whole description from a JSON file. Raises DescriptionError or HandleError naming the file."""
+    try:
+        return FoldDescription.from_json(_read_json(path, DescriptionError))
+    except (DescriptionError, HandleError) as error:
+        raise error if error.where.file else error.in_file(str(path)) from None
+
+
+def _read_json(path: str | Path, error: type[HandleError] | type[DescriptionError]) -> Any:
+    """The contents of a JSON file; raises ``error`` naming the file."""
     path = Path(path)
     try:
         if path.stat().st_size > _MAX_BYTES:
-            raise HandleError("the handle file is too large", file=str(path))
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise HandleError(f"cannot be read: {error.strerror or error}", file=str(path)) from None
+            raise error("the file is too large", file=str(path))
+        return json.loads(path.read_text(encoding="utf-8"))
+    except OSError as trouble:
+        raise error(f"cannot be read: {trouble.strerror or trouble}", file=str(path)) from None
     except (ValueError, RecursionError):
-        raise HandleError("is not valid JSON", file=str(path)) from None
-    try:
-        return parse_handles(data)
-    except HandleError as error:
-        raise error.in_file(str(path)) from None
+        raise error("is not valid JSON", file=str(path)) from None

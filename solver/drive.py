@@ -10,47 +10,126 @@ from __future__ import annotations
 
 import numpy as np
 
-from .arrays import FloatArray
+from .arrays import BoolArray, FloatArray
+from .controls.pull import Pull, Term
+from .measurement import measure
 from .net.piecewise_dog import PiecewiseDog
-from .objectives.fold_angle import FoldAngle, driven_points, fold_angle
+from .objectives.fold_angle import driven_points, fold_angle
 
 #: Mean stretch of the net that the drive may cause; the paper's bound is 0.003 (section 6.1).
 MEAN_BUDGET = 0.0025
+#: The drive turns the asked angle at most this much an iteration, degrees (method, section 4: 70° in 225).
+ANGLE_RATE = 0.4
 #: Gives the half-angle form the stiffness of the paper's cosine form at 60 degrees: (2 sin 60° / cos 30°)².
-_HALF_ANGLE = 4.0
+HALF_ANGLE = 4.0
+#: Fold that the first offset gives a flat sheet, degrees: the ramp starts from it, or it would flatten again.
+FIRST_ANGLE = 2.0
 #: Easing multiplies the pull by a power of budget / stretch, but by no less and no more than this.
 _EASE_POWER, _EASE_LEAST, _EASE_MOST = 1.5, 0.25, 0.7
 #: The pull is eased at most so often.
 _EASINGS = 6
 
 
-class AngleDrive:
-    """The fold-angle term with a common strength."""
+class AngleDrive(Pull):
+    """The fold-angle term on all creases, with one strength and a ramp for each crease."""
 
     def __init__(self, net: PiecewiseDog, weight: float) -> None:
-        self._net, self._weight = net, weight * _HALF_ANGLE
-        self._count = len(driven_points(net))
+        self._net, self._weight = net, weight * HALF_ANGLE
+        count = len(net.crease_labels)
+        self._crease = net.crease_points.crease[driven_points(net)]
+        self._strength, self._eased = 1.0, 0
+        self._now = np.zeros(count)  # degrees asked for now, by crease
+        self._amount = np.ones(count)
+        self._released = np.zeros(len(self._crease), dtype=bool)
+        self.angle: float | None = None
+
+    @property
+    def asked(self) -> float | None:
+        """The largest angle asked for now, degrees; None when the drive is off."""
+        return None if self.angle is None else float(self._now.max(initial=0.0))
+
+    def set(self, degrees: float | None, x: FloatArray) -> None:
+        """Another angle, None for none. Switched on, each crease's ramp starts from its present angle in x."""
+        if degrees is not None and self.angle is None:
+            self._now = present_angles(self._net, x)
+        elif degrees is None:
+            self._now = np.zeros_like(self._now)
+        self.angle = degrees
         self._strength, self._eased = 1.0, 0
 
-    def term(self, degrees: float) -> FoldAngle:
-        """The fold-angle term asking for ``degrees`` everywhere with the present strength."""
-        return fold_angle(self._net, np.full(self._count, degrees), self._weight * self._strength)
+    def set_amounts(self, amount: FloatArray) -> None:
+        """amount (creases,): the part of the angle that each crease is driven to."""
+        self._amount = np.asarray(amount, dtype=np.float64)
 
-    def reset(self) -> None:
-        """Back to full strength."""
-        self._strength, self._eased = 1.0, 0
+    def release(self, points: BoolArray) -> bool:
+        """Driven points (n,) that the drive lets alone because something else turns them. Whether that is new."""
+        changed = not np.array_equal(points, self._released)
+        self._released = points
+        return changed and self.angle is not None
 
-    def ease(self, x: FloatArray) -> bool:
-        """Give way at rest in positions x (V,3), net units, when they are over the budget. Whether it did."""
+    def restart(self, crease: int, degrees: float) -> None:
+        """Begin the ramp of one crease anew from an angle."""
+        self._now[crease] = degrees
+
+    def terms(self) -> list[Term]:
+        if self.angle is None:
+            return []
+        weight = np.where(self._released, 0.0, self._weight * self._strength)
+        return [fold_angle(self._net, self._now[self._crease], weight)]
+
+    def asks(self, x: FloatArray) -> bool:
+        return bool(self.angle) and bool((self._amount > 0).any())
+
+    def begin(self, x: FloatArray) -> None:
+        if self.angle is not None:
+            self._now = np.minimum(FIRST_ANGLE, self._targets())
+
+    def on_way(self) -> bool:
+        return self.angle is not None and not np.array_equal(self._targets(), self._now)
+
+    def move(self, x: FloatArray, pace: float) -> bool:
+        if self.angle is None:
+            return False
+        gap = self._targets() - self._now
+        if not gap.any():
+            return False
+        rate = ANGLE_RATE * pace
+        self._now = np.where(np.abs(gap) <= rate + 1e-9, self._targets(), self._now + np.clip(gap, -rate, rate))
+        return True
+
+    def settle(self, x: FloatArray) -> bool:
+        """Give way at rest in x (V,3) when the paper is stretched over the budget."""
+        if self.angle is None or self._eased >= _EASINGS:
+            return False
         mean = mean_stretch(self._net, x)
-        if mean <= MEAN_BUDGET or self._eased >= _EASINGS:
+        if mean <= MEAN_BUDGET:
             return False
         self._strength *= float(np.clip((MEAN_BUDGET / mean) ** _EASE_POWER, _EASE_LEAST, _EASE_MOST))
         self._eased += 1
         return True
+
+    def mark(self) -> object:
+        return self._now
+
+    def go_back(self, mark: object) -> None:
+        if isinstance(mark, np.ndarray) and self.angle is not None:
+            self._now = mark
+
+    def _targets(self) -> FloatArray:
+        return np.clip((self.angle or 0.0) * self._amount, 0.0, 180.0)
 
 
 def mean_stretch(net: PiecewiseDog, x: FloatArray) -> float:
     """Mean relative change of length of the net's edges at x (V,3), net units."""
     length = np.linalg.norm(x[net.edges[:, 1]] - x[net.edges[:, 0]], axis=1)
     return float(np.abs(length / net.edge_length - 1).mean())
+
+
+def present_angles(net: PiecewiseDog, x: FloatArray) -> FloatArray:
+    """(creases,) median unsigned fold angle of each crease at x (V,3), degrees; 0 where none has a meaning."""
+    m = measure(net, net.frame.to_drawing(x))
+    known = np.isfinite(m.fold_angle)
+    result = np.zeros(len(net.crease_labels))
+    for crease in np.unique(m.crease[known]):
+        result[crease] = np.median(m.fold_angle[known & (m.crease == crease)])
+    return result

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,18 +13,26 @@ import numpy as np
 import shapely
 
 from .arrays import FloatArray
+from .controls.amount import Amount
+from .controls.angle import Angle
+from .controls.control import crease_index
+from .controls.pull import Finding, Lack
 from .description import FoldDescription, Handle
 from .errors import CurvefoldError
 from .folding import REACHED, FoldModel, SqpReport, Status
+from .laid_flat import off_plane
 from .measurement import Measurement, measure
 from .net.build import build_net
 from .net.piecewise_dog import PiecewiseDog
 from .pattern.crease_pattern import CreasePattern
+from .verify import verify
 
 #: SQP iterations between two calls of ``progress``.
 _REPORT_EVERY = 10
 #: The drive has reached its angle when the median fold angle is this part of it.
 ANGLE_REACHED = 0.85
+#: A sheet thinner than this is flat, net units.
+_FLAT = 1e-6
 #: Mean relative stretch that paper may show (paper, section 6.1).
 MAX_MEAN_STRETCH = 0.003
 
@@ -34,11 +43,13 @@ class Outcome(Enum):
     """How a fold ended. ``sentence`` is for the user, ``ok`` whether it did what it was asked."""
 
     FOLDED = "folded: every target is reached and every crease point is folded"
+    FLAT = "the sheet lies flat: nothing asks it to fold"
     NOT_FOLDED = "a crease is not folded everywhere"
     AGAINST_ASSIGNMENT = "a crease folded against its assignment"
     SHALLOW = "folded, but not as deep as asked: the sheet allows no more"
     OUT_OF_REACH = "a target is out of reach"
     STRETCHED = "the paper is stretched more than paper can be"
+    UNCERTIFIED = "the shape does not pass the independent check"
     UNSETTLED = "stopped before it settled"
     NOT_FINITE = "the numbers ran away; this is the last good shape"
 
@@ -53,7 +64,10 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, eq=False)
 class FoldResult:
-    """A folded net. positions (V,3), drawing units; ``detail`` says what ``status`` means here, and where."""
+    """A folded net. positions (V,3), drawing units; ``detail`` says what ``status`` means here, and where.
+
+    findings: what the controls ask for and the shape lacks
+    """
 
     pattern: CreasePattern
     description: FoldDescription
@@ -65,6 +79,7 @@ class FoldResult:
     iterations: int
     seconds: float
     last: SqpReport
+    findings: tuple[Finding, ...] = ()
 
     def summary(self) -> str:
         """A few lines for a terminal."""
@@ -104,8 +119,10 @@ class FoldResult:
             "handle_error": self.last.handle_error,
             "folded": m.folded_part,
             "fold_angle": [round(angle, 3) for angle in fold_angle_quantiles(m)],
+            "verification": verify(self.net, self.positions).to_json(),
             "objective": self.last.objective,
             "creases": [_crease_report(self.pattern, m, k) for k in range(len(self.pattern.creases))],
+            "findings": [finding.sentence for finding in self.findings],
             "notes": [*self.pattern.notes, *self.net.notes],
         }
 
@@ -119,14 +136,6 @@ def fold_angle_quantiles(m: Measurement) -> tuple[float, float, float]:
     return low, median, high
 
 
-def found_assignment(m: Measurement, crease: int) -> str:
-    """FOLD letter of what a crease became: V, M, or U where it changes sides or has no angle."""
-    sides = m.fold_sign[(m.crease == crease) & np.isfinite(m.fold_angle)]
-    if len(sides) == 0 or abs(sides.sum()) < 0.8 * len(sides):
-        return "U"
-    return "V" if sides.sum() > 0 else "M"
-
-
 def _crease_report(pattern: CreasePattern, m: Measurement, index: int) -> dict[str, Any]:
     mine = m.crease == index
     known = m.fold_angle[mine & np.isfinite(m.fold_angle)]
@@ -134,7 +143,7 @@ def _crease_report(pattern: CreasePattern, m: Measurement, index: int) -> dict[s
     return {
         "name": pattern.creases[index].name,
         "assignment": pattern.creases[index].assignment,
-        "found": found_assignment(m, index),
+        "found": m.side(index),
         "fold_angle": float(np.median(known)) if len(known) else None,
         "folded": float(m.folded[asked].mean()) if asked.any() else None,
         "points": int(mine.sum()),
@@ -155,6 +164,7 @@ def fold(
     model = FoldModel(net, weights=description.weights)
     if description.assignments == "bind":
         model.set_assignments([crease.assignment for crease in pattern.creases])
+    model.set_controls(description.controls)
     model.set_handles(description.handles)
     model.set_fold_angle(description.angle)
     iterations = 0
@@ -166,7 +176,7 @@ def fold(
         if model.status is not Status.RUNNING or iterations >= description.max_iterations:
             break
     measurement = measure(net, model.positions)
-    status, detail = _judge(pattern, description, net, model, report, measurement)
+    status, detail = judge(description, net, model, report, measurement)
     return FoldResult(
         pattern,
         description,
@@ -178,47 +188,64 @@ def fold(
         iterations,
         time.perf_counter() - begin,
         report,
+        model.findings,
     )
 
 
-def _judge(
-    pattern: CreasePattern,
+def judge(
     description: FoldDescription,
     net: PiecewiseDog,
     model: FoldModel,
     report: SqpReport,
     m: Measurement,
 ) -> tuple[Outcome, str]:
+    """How a model's fold ended, and the sentence for it: what went wrong first, or that nothing did."""
+    findings = model.findings
     if model.status is Status.NOT_FINITE or not np.isfinite(model.positions).all():
         return Outcome.NOT_FINITE, Outcome.NOT_FINITE.sentence
     if report.handle_error > REACHED * net.frame.unit:
         return Outcome.OUT_OF_REACH, _out_of_reach(description.handles, net, model, report)
+    away = [finding.sentence for finding in findings if finding.lack is Lack.REACH]
+    if away:
+        return Outcome.OUT_OF_REACH, "; ".join(away)
     if model.status is Status.RUNNING:
         return Outcome.UNSETTLED, f"stopped after {description.max_iterations} iterations before it settled"
+    if off_plane(model.positions) < _FLAT * net.frame.unit:
+        return Outcome.FLAT, Outcome.FLAT.sentence
     if not m.folded.all():
         labels = ", ".join(net.crease_labels[c] for c in m.not_folded)
         x, y = m.crease_position[np.flatnonzero(~m.folded)[0]]
         return Outcome.NOT_FOLDED, (
             f"not folded everywhere: {labels} ({m.folded_part:.1%} of all points are), first at ({x:.4g}, {y:.4g})"
         )
-    if description.assignments == "bind":
-        against = [
-            net.crease_labels[k]
-            for k, crease in enumerate(pattern.creases)
-            if crease.assignment in "MV" and found_assignment(m, k) != crease.assignment
-        ]
-        if against:
-            return Outcome.AGAINST_ASSIGNMENT, f"folded against its assignment: {', '.join(against)}"
+    against = [finding.sentence for finding in findings if finding.lack is Lack.SIDE]
+    if against:
+        return Outcome.AGAINST_ASSIGNMENT, "; ".join(against)
     mean = float(m.stretch.mean())
     if mean > MAX_MEAN_STRETCH:
         return Outcome.STRETCHED, f"the paper is stretched by {mean:.2%} in the mean, more than paper can be"
-    _, median, _ = fold_angle_quantiles(m)
+    shallow = [finding.sentence for finding in findings if finding.lack is Lack.ANGLE]
+    if shallow:
+        return Outcome.SHALLOW, "; ".join(shallow)
+    driven = m.fold_angle[np.isin(m.crease, _with_own_angle(description, net), invert=True)]
+    driven = driven[np.isfinite(driven)]
+    median = float(np.median(driven)) if len(driven) else math.inf
     if description.angle is not None and median < ANGLE_REACHED * description.angle:
         return Outcome.SHALLOW, (
             f"folded to {median:.0f}° in the median where {description.angle:g}° were asked: "
             "the sheet allows no more without stretching"
         )
+    verification = verify(net, model.positions)
+    if not verification.ok:
+        return Outcome.UNCERTIFIED, f"{Outcome.UNCERTIFIED.sentence}: {verification.faults[0]}"
     return Outcome.FOLDED, Outcome.FOLDED.sentence
+
+
+def _with_own_angle(description: FoldDescription, net: PiecewiseDog) -> list[int]:
+    """Creases that the drive does not take to its whole angle."""
+    controls = [control for control in description.controls if isinstance(control, Amount | Angle)]
+    names = [control.crease for control in controls if control.crease is not None]
+    return [crease_index(net.crease_labels, name) for name in names]
 
 
 def _out_of_reach(handles: tuple[Handle, ...], net: PiecewiseDog, model: FoldModel, report: SqpReport) -> str:

@@ -14,6 +14,8 @@ from .net.piecewise_dog import PiecewiseDog
 
 #: Tilts (sines) below this are flat: neither folded nor bent.
 FLAT_TILT = 1e-6
+#: A crease is a mountain or valley when its points on one side outnumber the others by this part of all.
+_ONE_SIDED = 0.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +51,13 @@ class Measurement:
     def not_folded(self) -> tuple[int, ...]:
         """Creases with a point that is not folded."""
         return tuple(int(c) for c in np.unique(self.crease[~self.folded]))
+
+    def side(self, crease: int) -> str:
+        """FOLD letter of what a crease became: V, M, or U where it changes sides or has no angle."""
+        sides = self.fold_sign[(self.crease == crease) & np.isfinite(self.fold_angle)]
+        if len(sides) == 0 or abs(sides.sum()) < _ONE_SIDED * len(sides):
+            return "U"
+        return "V" if sides.sum() > 0 else "M"
 
 
 def measure(net: PiecewiseDog, positions: ArrayLike) -> Measurement:
@@ -100,7 +109,8 @@ def _tilts(net: PiecewiseDog, x: FloatArray) -> tuple[FloatArray, FloatArray]:
     points = net.crease_points
     left = np.einsum("kw,kwc->kc", points.left_weights, x[points.left_vertices])
     right = np.einsum("kw,kwc->kc", points.right_weights, x[points.right_vertices])
-    middle = 0.5 * (left + right)
+    # A piece too small for a quad has no copy on its side: there the other one stands for both.
+    middle = np.where(points.right_vertices[:, :1] >= 0, 0.5 * (left + right), left)
     here = middle[points.carrier]
     back, front = (middle[points.fold_neighbours[:, k]] - here for k in (0, 1))
     binormal = np.cross(front, back)

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
-from shapely import Polygon
+from shapely import LineString, Polygon
 
 from ..arrays import FloatArray, IntArray
 from ..description import RESOLUTIONS
 from ..errors import NetError, PatternError
 from ..pattern.arrangement import Arrangement, arrange, sheet_polygon
-from ..pattern.crease_pattern import CreasePattern
+from ..pattern.crease_pattern import Crease, CreasePattern
 from ..pattern.curves import sample_crease
 from .crease_points import find_crease_points
 from .frame import NetFrame, border_direction
@@ -27,10 +27,13 @@ from .topology import Topology, build_topology
 _SAMPLE_SPACING = 0.08
 #: A sheet narrower than this many cells cannot bend in its width.
 _MIN_CELLS_ACROSS = 1.0
-#: A net of more vertices than this is refused before memory is gone.
-MAX_VERTICES = 400_000
-#: A net larger than this is refused before anything is built: cells of the whole grid.
-_MAX_POINTS = 200_000
+#: A net of more vertices than this is refused before memory is gone: folding takes about 25 KB a vertex.
+MAX_VERTICES = 100_000
+#: Curves of a drawing with more points than this are simplified, by at most this part of a cell; a drawing with
+#: more points than the second number even then, or with more creases, is no crease pattern.
+_MANY_POINTS, _SIMPLIFIED, _MAX_POINTS, _MAX_CREASES = 5_000, 1e-3, 20_000, 1_000
+#: Creases that cross more often are refused before they are cut; so many of their segments are looked at.
+_MAX_CROSSINGS, _CROSSING_SAMPLE = 20_000, 2_000
 
 
 def build_net(pattern: CreasePattern, resolution: int = 32) -> PiecewiseDog:
@@ -43,9 +46,11 @@ def build_net(pattern: CreasePattern, resolution: int = 32) -> PiecewiseDog:
         raise NetError(f"the resolution must be a whole number from {RESOLUTIONS[0]} to {RESOLUTIONS[1]}")
     if not pattern.creases:
         raise PatternError("there is no crease, so there is nothing to fold", element="creases")
-    total = len(pattern.boundary) + sum(len(c.points) for c in pattern.creases)
-    if total > _MAX_POINTS:
-        raise PatternError(f"the drawing has {total} points, more than {_MAX_POINTS}; simplify its curves")
+    if len(pattern.creases) > _MAX_CREASES:
+        raise PatternError(
+            f"the drawing has {len(pattern.creases):,} creases, more than {_MAX_CREASES:,}", element="creases"
+        )
+    pattern, note = _simplified(pattern, resolution)
     sheet_polygon(pattern.boundary, pattern.holes)  # in drawing units, so that errors name the user's place
     frame = _frame(pattern, int(resolution))
     arrangement = _arrange(pattern, frame)
@@ -54,8 +59,43 @@ def build_net(pattern: CreasePattern, resolution: int = 32) -> PiecewiseDog:
     over = overlay(arrangement, grid)
     topology = build_topology(over, grid)
     if len(topology.vertex_grid) > MAX_VERTICES:
-        raise NetError(f"the net has more than {MAX_VERTICES} vertices; use a lower resolution")
-    return _assemble(pattern, frame, arrangement, grid, over, topology)
+        raise NetError(f"the net has more than {MAX_VERTICES:,} vertices; use a lower resolution")
+    net = _assemble(pattern, frame, arrangement, grid, over, topology)
+    return replace(net, notes=(*note, *net.notes))
+
+
+def _simplified(pattern: CreasePattern, resolution: int) -> tuple[CreasePattern, tuple[str, ...]]:
+    """The pattern without points that no net of this resolution can show, and a note when some were left out."""
+    total = _point_count(pattern)
+    if total <= _MANY_POINTS:
+        return pattern, ()
+    tolerance = _SIMPLIFIED * float(np.ptp(pattern.boundary, axis=0).max()) / resolution
+    rings = [_fewer(ring, True, tolerance) for ring in (pattern.boundary, *pattern.holes)]
+    creases = [
+        Crease(_fewer(c.points, c.closed, tolerance), c.closed, c.assignment, c.name) for c in pattern.creases
+    ]
+    fewer = CreasePattern(rings[0], rings[1:], creases, pattern.name, pattern.unit_mm, pattern.notes)
+    left = _point_count(fewer)
+    if left > _MAX_POINTS:
+        raise PatternError(
+            f"the drawing has {total:,} points, and {left:,} after simplifying its curves; "
+            f"more than {_MAX_POINTS:,} are not read"
+        )
+    return fewer, (f"the drawing's {total:,} points were simplified to {left:,}",)
+
+
+def _point_count(pattern: CreasePattern) -> int:
+    curves = [pattern.boundary, *pattern.holes, *(crease.points for crease in pattern.creases)]
+    return sum(len(curve) for curve in curves)
+
+
+def _fewer(points: FloatArray, closed: bool, tolerance: float) -> FloatArray:
+    line = np.vstack([points, points[:1]]) if closed else points
+    kept = shapely.get_coordinates(LineString(line - line[0]).simplify(tolerance)) + line[0]
+    # Less than a triangle is left of a ring smaller than the tolerance: it stays as it is.
+    if len(kept) < (4 if closed else 2):
+        return points
+    return kept[:-1] if closed else kept
 
 
 def _frame(pattern: CreasePattern, resolution: int) -> NetFrame:
@@ -71,6 +111,11 @@ def _frame(pattern: CreasePattern, resolution: int) -> NetFrame:
             f"at least {needed} quads are needed along its longer side",
             element="border",
         )
+    cells = round(width * height / unit**2)
+    if cells > MAX_VERTICES:
+        raise NetError(
+            f"the net would have about {cells:,} vertices, more than {MAX_VERTICES:,}; use a lower resolution"
+        )
     corner = NetFrame((0.0, 0.0), angle, 1.0).to_drawing(low[None])[0] + pattern.boundary[0]
     return NetFrame((float(corner[0]), float(corner[1])), angle, unit)
 
@@ -78,9 +123,31 @@ def _frame(pattern: CreasePattern, resolution: int) -> NetFrame:
 def _arrange(pattern: CreasePattern, frame: NetFrame) -> Arrangement:
     sheet = sheet_polygon(frame.to_net(pattern.boundary), tuple(frame.to_net(h) for h in pattern.holes))
     spacing = _SAMPLE_SPACING * frame.unit
-    lines = [frame.to_net(sample_crease(crease, spacing)) for crease in pattern.creases]
-    labels = [pattern.crease_label(k) for k in range(len(pattern.creases))]
-    return arrange(sheet, lines, labels, frame.to_drawing)
+    folded = [k for k, crease in enumerate(pattern.creases) if crease.assignment != "F"]
+    if not folded:
+        raise PatternError("every crease is marked flat (F), so there is nothing to fold", element="creases")
+    lines = [frame.to_net(sample_crease(pattern.creases[k], spacing)) for k in folded]
+    labels = [pattern.crease_label(k) for k in folded]
+    crossings = _crossings(lines)
+    if crossings > _MAX_CROSSINGS:
+        raise PatternError(
+            f"the creases cross about {crossings:,} times, more than {_MAX_CROSSINGS:,}", element="creases"
+        )
+    arrangement = arrange(sheet, lines, labels, frame.to_drawing)
+    notes = arrangement.notes
+    if len(folded) < len(pattern.creases):
+        flat = ", ".join(pattern.crease_label(k) for k in sorted(set(range(len(pattern.creases))) - set(folded)))
+        notes = (*notes, f"marked flat (F) and not folded: {flat}")
+    chains = tuple(replace(chain, crease=folded[chain.crease]) for chain in arrangement.chains)
+    return replace(arrangement, chains=chains, notes=notes)
+
+
+def _crossings(lines: list[FloatArray]) -> int:
+    """About how often the segments of polylines cross each other; exact for drawings that are not large."""
+    segments = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in lines])
+    step = -(-len(segments) // _CROSSING_SAMPLE)
+    sample = shapely.linestrings(segments[::step])
+    return len(shapely.STRtree(sample).query(sample, predicate="crosses")[0]) // 2 * step**2
 
 
 def _assemble(

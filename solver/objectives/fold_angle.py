@@ -19,9 +19,8 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..net.piecewise_dog import PiecewiseDog
+from .bounded import bounded
 
-#: Residual (half a chord, about half an angle in radians) from which on the force no longer grows.
-BOUND = 0.05
 #: Chord below which a crease counts as flat: rounds the kink of |t1 - t2| at zero.
 FLAT_CHORD = 0.02
 
@@ -43,12 +42,12 @@ class FoldAngle:
     def residual(self, x: FloatArray) -> FloatArray:
         tangents, _ = _tangents(x)
         _, size = _chord(tangents)
-        return _bounded(0.5 * size - self._asked())[0][None]
+        return bounded(0.5 * size - self._asked())[0][None]
 
     def linearize(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         (t1, t2), (l1, l2) = _tangents(x)
         chord, size = _chord((t1, t2))
-        residual, slope = _bounded(0.5 * size - self._asked())
+        residual, slope = bounded(0.5 * size - self._asked())
         pull = 0.5 * slope * chord / size
         g1 = (pull - (pull * t1).sum(0) * t1) / l1
         g2 = ((pull * t2).sum(0) * t2 - pull) / l2
@@ -72,13 +71,6 @@ def _chord(tangents: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatAr
     return chord, np.sqrt((chord * chord).sum(0) + FLAT_CHORD**2)
 
 
-def _bounded(r: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """s(r) with s² = 2 b² (sqrt(1 + r²/b²) - 1), b = BOUND, and ds/dr."""
-    root = np.sqrt(1 + (r / BOUND) ** 2)
-    factor = np.sqrt(2 / (1 + root))
-    return r * factor, 1 / (root * factor)
-
-
 def driven_points(net: PiecewiseDog) -> IntArray:
     """Crease points (n,) whose fold angle can be asked for: an edge on each side, not along the crease."""
     points = net.crease_points
@@ -87,6 +79,11 @@ def driven_points(net: PiecewiseDog) -> IntArray:
 
 def fold_angle(net: PiecewiseDog, degrees: FloatArray, weight: FloatArray | float) -> FoldAngle:
     """degrees (n,): the asked angle at each of ``driven_points(net)``; weight: one, or one each (n,)."""
-    points, chosen = net.crease_points, driven_points(net)
+    return fold_angle_at(net, np.arange(len(driven_points(net))), degrees, weight)
+
+
+def fold_angle_at(net: PiecewiseDog, rows: IntArray, degrees: FloatArray, weight: FloatArray | float) -> FoldAngle:
+    """The same at some of the driven points: rows (n,) indices into ``driven_points(net)``."""
+    points, chosen = net.crease_points, driven_points(net)[rows]
     stencil = np.hstack([points.left_edge[chosen], points.right_edge[chosen]])
     return FoldAngle(stencil, points.cos2[chosen], np.cos(np.radians(degrees)), np.full(len(chosen), weight))

@@ -209,12 +209,14 @@ def _snap_ends(
             target[close] = target[fixed[0]] if len(fixed) else places[close].mean(axis=0)
             moved[close] = True
     result = [points.copy() for points, _ in parts]
+    lines = [LineString(points) for points, _ in parts]
+    tree = shapely.STRtree(lines)
     for n, (k, _side, place) in enumerate(ends):
         if moved[n]:
             continue
-        others = [LineString(points) for j, (points, _) in enumerate(parts) if j != k]
+        near = np.sort(tree.query(Point(place), predicate="dwithin", distance=tolerance))
         own = _far_part(parts[k][0], _side, 4 * tolerance)
-        candidates = [*others, own] if own is not None else others
+        candidates = [lines[j] for j in near if j != k] + ([own] if own is not None else [])
         if not candidates:
             continue
         distances = shapely.distance(Point(place), candidates)

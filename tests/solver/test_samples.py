@@ -17,7 +17,7 @@ import pytest
 import shapely
 
 import solver
-from solver.fold import MAX_MEAN_STRETCH, fold_angle_quantiles, found_assignment
+from solver.fold import MAX_MEAN_STRETCH, fold_angle_quantiles
 
 FOLDER = Path(__file__).resolve().parents[2] / "sample_patterns"
 SAMPLES = sorted(path.stem for path in FOLDER.glob("*.svg"))
@@ -60,7 +60,7 @@ def test_sample_folds(name: str, way: str) -> None:
     assert result.last.constraint < MAX_RESIDUAL
     drawn = [crease.assignment for crease in result.pattern.creases]
     if set(drawn) == {"M", "V"}:  # the first crease is a valley in all of them, as it is in a free fold
-        assert [found_assignment(m, k) for k in range(len(drawn))] == drawn
+        assert [m.side(k) for k in range(len(drawn))] == drawn
 
 
 def test_samples_are_complete() -> None:

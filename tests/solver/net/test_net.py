@@ -417,3 +417,16 @@ def test_a_point_beside_a_crease_belongs_to_its_own_side(drawings: ModuleType) -
             vertices, _ = net.locate((x, height + side * 0.004))
             patch = net.patch_polygons[net.vertex_patch[vertices[0]]]
             assert (patch.centroid.y > height) == (side > 0)
+
+
+def test_a_flat_crease_is_no_cut_and_keeps_its_number() -> None:
+    square = [(0, 0), (10, 0), (10, 10), (0, 10)]
+    flat, valley = (solver.Crease([(x, 0), (x + 0.3, 5), (x, 10)], assignment=a) for x, a in ((3, "F"), (7, "V")))
+    both = solver.build_net(solver.CreasePattern(square, creases=[flat, valley]), 8)
+    alone = solver.build_net(solver.CreasePattern(square, creases=[valley]), 8)
+    assert np.array_equal(both.rest, alone.rest)
+    assert set(both.crease_points.crease) == {1}
+    assert len(both.crease_labels) == 2
+    assert any("crease 1" in note for note in both.notes)
+    with pytest.raises(solver.PatternError, match="flat"):
+        solver.build_net(solver.CreasePattern(square, creases=[flat]), 8)

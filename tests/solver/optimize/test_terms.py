@@ -14,6 +14,16 @@ import solver
 import solver.constraints
 import solver.objectives
 from solver.constraints.orthogonal_geodesic import LinkAngles, StarAngles
+from solver.controls.amount import Amount
+from solver.controls.angle import Angle
+from solver.controls.control import Control
+from solver.controls.curve import Curve
+from solver.controls.glue import Glue
+from solver.controls.keep import Keep
+from solver.controls.pair import Pair
+from solver.controls.registry import BY_NAME, KINDS
+from solver.controls.side import Side
+from solver.drive import AngleDrive
 from solver.objectives.bending import bending
 from solver.objectives.continuity import continuity
 from solver.objectives.fold_angle import driven_points, fold_angle
@@ -27,7 +37,23 @@ Term = ResidualTerm | LinearTerm
 
 PLACES = [(0.1, 0.1), (0.5, 0.52), (0.93, 0.4), (1.0, 1.0), (0.0, 0.45)]
 
-#: Module -> its terms on a net. A new file of terms must be entered here (a test below says so).
+#: Two of the net's creases, flat patches, borders: examples of every kind of control.
+EXAMPLES: tuple[Control, ...] = (
+    Amount(1, 0.5),
+    Side(1, "V"),
+    Side(2, "M"),
+    Angle(40.0, crease=1),
+    Angle(-70.0, crease=2, signed=True),
+    Pair((0.1, 0.1), (0.9, 0.15)),
+    Pair((0.1, 0.1), (0.9, 0.8), axes=(True, False, True)),
+    Pair((0.0, 1.0), (1.0, 0.2), distance=0.6),
+    Keep((0.1, 0.1)),
+    Curve(1, curvature_times=1.3, torsion_plus=0.4),
+    Glue(((0.0, 0.2), (0.0, 0.8)), ((1.0, 0.2), (1.0, 0.8))),
+)
+#: Files beside the terms that hold none.
+NO_TERMS = ("solver.objectives.bounded",)
+#: All terms but those of the controls, which the registry tells. A new file of terms must have one here or there.
 NAMES = (
     "bending",
     "border bending",
@@ -63,6 +89,17 @@ def terms_by_module(net: solver.PiecewiseDog) -> dict[str, list[Term]]:
         "solver.objectives.fold_angle": [fold_angle(net, angles, 400.0)],
         "solver.constraints.orthogonal_geodesic": [StarAngles(net.stars), LinkAngles(net.links)],
     }
+
+
+def control_terms(net: solver.PiecewiseDog, kind: str) -> list[Term]:
+    """The terms of the examples of one kind, with targets that the flat sheet does not meet."""
+    x = np.column_stack([net.flat, np.zeros(len(net.flat))])
+    entry = next(entry for entry in KINDS if entry.control.kind == kind)
+    pull = entry.pull(net, solver.Weights(), AngleDrive(net, 100.0))
+    pull.set([(kind, control) for control in EXAMPLES if control.kind == kind], x)
+    for _ in range(20):
+        pull.move(x, 1.0)
+    return pull.terms()
 
 
 @pytest.fixture(scope="module")
@@ -118,7 +155,9 @@ def jacobian_by_differences(term: Term, x: np.ndarray) -> np.ndarray:
 def test_every_file_of_terms_is_tested_here(
     net: solver.PiecewiseDog, terms: dict[str, Term], drawings: ModuleType
 ) -> None:
-    tested = terms_by_module(net)
+    assert {control.kind for control in EXAMPLES} == set(BY_NAME), "a kind of control has no example"
+    controlled = [term for kind in BY_NAME for term in control_terms(net, kind)]
+    tested = {*terms_by_module(net), *(type(term).__module__ for term in controlled), *NO_TERMS}
     for package in (solver.objectives, solver.constraints):
         for module in pkgutil.iter_modules(package.__path__, package.__name__ + "."):
             assert module.name in tested, f"{module.name} has no finite-difference test"
@@ -127,7 +166,28 @@ def test_every_file_of_terms_is_tested_here(
     model = solver.FoldModel(net)
     model.set_handles([solver.Handle(at=place, target=(*place, 0.1)) for place in PLACES])
     model.set_fold_angle(30)
-    assert set(model.advance(1).objective) <= set(terms)
+    model.set_controls(EXAMPLES)
+    names = set(model.advance(1).objective)
+    assert names <= set(terms) | {term.name for term in controlled}
+    assert {term.name for term in controlled} <= names
+
+
+@pytest.mark.parametrize("state", STATES)
+@pytest.mark.parametrize("kind", BY_NAME)
+def test_jacobian_of_a_control_is_the_derivative_of_its_residual(
+    net: solver.PiecewiseDog, kind: str, state: str
+) -> None:
+    terms = control_terms(net, kind)
+    assert terms or kind == "amount"
+    assert len({term.name for term in terms}) == len(terms)
+    x = np.ascontiguousarray(shape(net, state).T)
+    for term in terms:
+        residual, jacobian = term.linearize(gather(x, term.stencil))
+        assert np.array_equal(residual, term.residual(gather(x, term.stencil)))
+        expected = jacobian_by_differences(term, x.T)
+        scale = np.abs(expected).max()
+        assert scale > 0.1 or (term.name, state) == ("angles", "flat")
+        assert np.abs(jacobian - expected).max() < 1e-6 * max(scale, 1.0), term.name
 
 
 @pytest.mark.parametrize("state", STATES)

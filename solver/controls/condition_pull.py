@@ -1,0 +1,72 @@
+"""The fold condition at work: stiffer where points come to rest unfolded."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..arrays import BoolArray, FloatArray
+from ..laid_flat import off_plane
+from ..measurement import measure
+from ..net.piecewise_dog import PiecewiseDog
+from ..objectives.fold_condition import fold_condition
+from ..optimize.term import gather
+from .pull import Pull, Term
+
+#: Where points come to rest unfolded the condition is made this much stiffer, at most so often.
+_STIFFER, _STIFFENINGS = 4.0, 3
+#: What is not folded even then is made stiffer alone, this much, and so often: faint folds at grid edges that
+#: nearly follow the crease, where the whole condition would have to be stiffer than the paper.
+_ALONE_STIFFER, _ALONE_STIFFENINGS = 16.0, 3
+#: A fold is safe while the tilts of its two sides, which should cancel, do so to this part.
+_MARGIN = 0.5
+#: A net whose vertices all lie within this of a plane is flat, net units.
+FLAT = 1e-9
+
+
+class ConditionPull(Pull):
+    """``unfolding`` is set while the paper goes back to flat: then no point is asked to be folded."""
+
+    def __init__(self, net: PiecewiseDog, weight: float) -> None:
+        self._net, self._weight = net, weight
+        self._term = fold_condition(net, weight)
+        self._stiffness, self._times = np.ones(len(self._term.stencil)), 0
+        self.unfolding = False
+
+    def terms(self) -> list[Term]:
+        if self._weight == 0:
+            return []
+        return [replace(self._term, weight=self._weight * self._stiffness)]
+
+    def settle(self, x: FloatArray) -> bool:
+        """Stiffer when some point is not folded, or so little that polishing could undo it."""
+        if not self._may_stiffen(x):
+            return False
+        first, second = self._term.tilts(gather(np.ascontiguousarray(x.T), self._term.stencil))
+        safe = np.abs(first + second) <= _MARGIN * np.abs(first - second)
+        return self._stiffen(~(safe & self._folded(x)))
+
+    def undone(self, x: FloatArray) -> bool:
+        """Whether polishing to x has undone a faint fold and the condition has been made stiffer for it."""
+        return self._may_stiffen(x) and self._stiffen(~self._folded(x))
+
+    def _folded(self, x: FloatArray) -> BoolArray:
+        """(n,) whether each point that carries the condition is folded."""
+        folded = measure(self._net, self._net.frame.to_drawing(x)).folded
+        return np.asarray(folded[self._net.crease_points.carrier])
+
+    def _may_stiffen(self, x: FloatArray) -> bool:
+        asked = self._weight > 0 and len(self._net.crease_points.carrier) > 0
+        return asked and not self.unfolding and off_plane(x) > FLAT
+
+    def _stiffen(self, wanting: BoolArray) -> bool:
+        """All points while some are wanting (n,), later only these; whether anything was done."""
+        if not wanting.any() or self._times >= _STIFFENINGS + _ALONE_STIFFENINGS:
+            return False
+        if self._times < _STIFFENINGS:
+            self._stiffness = self._stiffness * _STIFFER
+        else:
+            self._stiffness = np.where(wanting, self._stiffness * _ALONE_STIFFER, self._stiffness)
+        self._times += 1
+        return True

@@ -1,0 +1,161 @@
+"""Handles at work: targets on their way through space, and a harder pull where bending holds the paper back."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import FloatArray, IntArray
+from ..drive import MEAN_BUDGET, mean_stretch
+from ..errors import HandleError
+from ..net.piecewise_dog import PiecewiseDog
+from ..objectives.handles import AxisHandles, handles
+from .pull import Pull, Term
+
+if TYPE_CHECKING:
+    from ..description import Handle
+
+#: A handle's target moves at most this far an iteration, net units.
+HANDLE_RATE = 0.25
+#: Handles off their targets at rest pull this much harder, at most so often.
+_STIFFER, _STIFFENINGS = 4.0, 3
+#: Handles farther than this from their targets at rest pull harder, net units.
+_CLOSE = 0.05
+#: Handles that would count as missed pull a little harder even where the paper is stretched, up to this mean.
+_MISSED, _STIFFER_IF_MISSED, _NEARLY_STRETCHED = 0.25, 1.6, 0.0028
+#: Handles nearer than this to each other hold one point, net units.
+_SAME_POINT = 1e-6
+
+
+class HandlePull(Pull):
+    """All handles of a paper."""
+
+    def __init__(self, net: PiecewiseDog, weight: float) -> None:
+        self._net, self._weight = net, weight
+        self._handles: tuple[Handle, ...] = ()
+        self._vertices = np.zeros((0, 4), dtype=np.int64)
+        self._weights = np.zeros((0, 4))
+        self._axes = np.ones((0, 3), dtype=bool)  # of the drawing, along which each handle pulls
+        self._strengths = np.zeros(0)
+        self._targets = np.zeros((0, 3))  # where the handles are drawn to in the end, net units
+        self._paths = np.zeros((0, 3))  # where they are drawn to now
+        self._harder, self._times = 1.0, 0
+
+    def __len__(self) -> int:
+        return len(self._handles)
+
+    def set(self, handles: Sequence[Handle], x: FloatArray) -> None:
+        """Replace all handles. Handles that stay at the same point keep their way.
+
+        Raises HandleError: a handle off the sheet, or two at one point with different targets.
+        """
+        located: list[tuple[IntArray, FloatArray]] = []
+        for k, handle in enumerate(handles):
+            try:
+                located.append(self._net.locate(handle.at))
+            except HandleError as error:
+                raise HandleError(error.message, element=f"handle {k + 1}", place=handle.at) from None
+        kept = _without_doubles(handles, self._net.frame.unit)
+        handles = tuple(handles[k] for k in kept)
+        vertices = np.array([located[k][0] for k in kept], dtype=np.int64).reshape(-1, 4)
+        weights = np.array([located[k][1] for k in kept]).reshape(-1, 4)
+        now = np.einsum("hk,hkc->hc", weights, x[vertices])
+        same = [next((j for j, old in enumerate(self._handles) if old.at == new.at), None) for new in handles]
+        paths = np.array([now[k] if j is None else self._paths[j] for k, j in enumerate(same)])
+        self._axes = np.array([h.axes for h in handles], dtype=bool).reshape(-1, 3)
+        self._strengths = np.array([h.strength for h in handles])
+        self._handles, self._vertices, self._weights = handles, vertices, weights
+        self._targets = self._net.frame.to_net(np.array([h.target for h in handles]).reshape(-1, 3))
+        self._paths = paths.reshape(-1, 3)
+
+    def gaps(self, x: FloatArray) -> FloatArray:
+        """(H,) distances of the handles from their targets along the axes they pull along, net units."""
+        places = np.einsum("hk,hkc->hc", self._weights, x[self._vertices])
+        gaps = (places - self._targets) @ self._net.frame.axes().T
+        return np.asarray(np.linalg.norm(gaps * self._axes, axis=1))
+
+    def anchors(self) -> tuple[FloatArray, FloatArray]:
+        """Points of the flat sheet (H,2) and targets (H,3), net units, of the handles that pull along all axes."""
+        whole = self._axes.all(axis=1)
+        at = np.einsum("hk,hkc->hc", self._weights, self._net.flat[self._vertices])
+        return at[whole], self._targets[whole]
+
+    def terms(self) -> list[Term]:
+        stiffness = self._weight * self._harder * self._strengths
+        whole = self._axes.all(axis=1)
+        part = ~whole
+        terms: list[Term] = []
+        if whole.any():
+            terms.append(handles(self._vertices[whole], self._weights[whole], self._paths[whole], stiffness[whole]))
+        if part.any():
+            axes = self._net.frame.axes()[:, None, :] * self._axes[part].T[:, :, None]
+            terms.append(
+                AxisHandles(self._vertices[part], self._weights[part], self._paths[part], axes, stiffness[part])
+            )
+        return terms
+
+    def asks(self, x: FloatArray) -> bool:
+        return bool(self.gaps(x).max(initial=0.0) > 1e-9)
+
+    def on_way(self) -> bool:
+        return not np.array_equal(self._targets, self._paths)
+
+    def move(self, x: FloatArray, pace: float) -> bool:
+        gap = self._targets - self._paths
+        distance = np.linalg.norm(gap, axis=1)
+        if not (distance > 0).any():
+            return False
+        share = np.minimum(1.0, HANDLE_RATE * pace / np.maximum(distance, 1e-300))
+        self._paths = np.where((share >= 1.0)[:, None], self._targets, self._paths + share[:, None] * gap)
+        return True
+
+    def settle(self, x: FloatArray) -> bool:
+        """Pull harder when handles stay off their targets though the paper is far from stretched."""
+        if not len(self._handles) or self._times >= _STIFFENINGS:
+            return False
+        gap, mean = self.gaps(x).max(), mean_stretch(self._net, x)
+        if gap > _CLOSE and mean <= 0.5 * MEAN_BUDGET:
+            self._harder *= _STIFFER
+        elif gap > _MISSED and mean <= _NEARLY_STRETCHED:
+            self._harder *= _STIFFER_IF_MISSED
+        else:
+            return False
+        self._times += 1
+        return True
+
+    def wake(self) -> bool:
+        changed = self._times > 0
+        self._harder, self._times = 1.0, 0
+        return changed
+
+    def mark(self) -> object:
+        return self._paths
+
+    def go_back(self, mark: object) -> None:
+        if isinstance(mark, np.ndarray) and mark.shape == self._paths.shape:
+            self._paths = mark
+
+
+def _without_doubles(handles: Sequence[Handle], unit: float) -> list[int]:
+    """Indices of handles without repeats. Raises HandleError where one point has two targets.
+
+    unit: drawing units in one net unit; points nearer than _SAME_POINT of it are one.
+    """
+    kept: list[int] = []
+    for k, handle in enumerate(handles):
+        here = [j for j in kept if math.dist(handles[j].at, handle.at) <= _SAME_POINT * unit]
+        for j in here:
+            other = handles[j]
+            shared = [a for a in range(3) if handle.axes[a] and other.axes[a]]
+            if any(handle.target[a] != other.target[a] for a in shared):
+                raise HandleError(
+                    f"it lies on the same point as handle {j + 1} but has another target",
+                    element=f"handle {k + 1}",
+                    place=handle.at,
+                )
+        if not any(handles[j].axes == handle.axes for j in here):
+            kept.append(k)
+    return kept

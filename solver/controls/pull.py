@@ -1,0 +1,82 @@
+"""What pulls at a paper: makes terms of the solver and leads their targets along a path."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+from ..arrays import BoolArray, FloatArray
+from ..optimize.term import LinearTerm, ResidualTerm
+
+Term = ResidualTerm | LinearTerm
+
+
+class Lack(Enum):
+    """What a finding is about."""
+
+    REACH = "a target in space is not reached"
+    SIDE = "a crease did not fold to its side"
+    ANGLE = "an angle is not reached"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was asked and not reached, in one sentence."""
+
+    lack: Lack
+    sentence: str
+
+
+class Pull:
+    """One kind of pull on one net. Shapes are x (V,3), net units.
+
+    The terms of a pull may change their values at any time; ``FoldModel`` notices by itself when they change
+    their structure. What a subclass does not need it leaves as it is here.
+    """
+
+    def terms(self) -> list[Term]:
+        """Its terms with their present values."""
+        return []
+
+    def asks(self, x: FloatArray) -> bool:
+        """Whether x has to move for it: a flat sheet is given its first fold only when something asks."""
+        return False
+
+    def sides(self) -> Mapping[int, int]:
+        """Sides (+1 valley, -1 mountain) by crease that a flat sheet should start to fold to."""
+        return {}
+
+    def released(self) -> BoolArray | None:
+        """Which of ``driven_points`` (n,) the angle drive should let alone, None for none."""
+        return None
+
+    def begin(self, x: FloatArray) -> None:
+        """The shape was changed from outside (the first fold): paths start from it."""
+
+    def on_way(self) -> bool:
+        """Whether targets still have to move."""
+        return False
+
+    def move(self, x: FloatArray, pace: float) -> bool:
+        """Lead the targets at most ``pace`` usual steps on; whether they have moved."""
+        return False
+
+    def settle(self, x: FloatArray) -> bool:
+        """At rest in x: give way, or pull harder. Whether any value has changed."""
+        return False
+
+    def wake(self) -> bool:
+        """Other targets: back to the usual strength. Whether any value has changed."""
+        return False
+
+    def mark(self) -> object:
+        """How far the targets have come, for ``go_back``."""
+        return None
+
+    def go_back(self, mark: object) -> None:
+        """Bring the targets back to where ``mark`` says they were."""
+
+    def findings(self, x: FloatArray) -> list[Finding]:
+        """What x lacks of all that was asked."""
+        return []
