@@ -1,0 +1,147 @@
+"""One run of the corpus: a drawing dragged, and what came of it."""
+
+from __future__ import annotations
+
+import resource
+import time
+import traceback
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+import solver
+from benchmarks.corpus_drags import FRAME_ITERATIONS, Drag, make_drag, protocol_drag
+from benchmarks.corpus_drawings import make_drawing
+from solver.arrays import FloatArray
+from solver.fold import MAX_MEAN_STRETCH, fold_angle_quantiles, judge
+from solver.folding import REACHED
+
+#: SQP iterations after which a run that has not settled ends.
+MOST_ITERATIONS = 1500
+#: The protocol: quads along the longer side, and frames at rest at the end.
+PROTOCOL_RESOLUTION, PROTOCOL_REST = 32, 6
+#: A sheet that went back is flat within this part of its longer side.
+FLAT_AGAIN = 1e-3
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run: a seed of the corpus, or a drawing's file by the protocol."""
+
+    seed: int
+    drawing: str | None = None
+
+
+@dataclass
+class Run:
+    """What one run gave. Lengths in mean grid edges, angles in degrees, fold_angle 10 %, median and 90 %.
+
+    ok: a feasible drag reached with every crease point folded and the paper whole; one there and back flat
+    again; one too far said to be out of reach. off_flat: how far from flat, part of the longer side, if back.
+    """
+
+    seed: int
+    family: str = ""
+    drag: str = ""
+    feasible: bool = True
+    status: str = "crash"
+    reached: bool = False
+    folded: float = 0.0
+    fold_angle: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
+    stretch_mean: float = 0.0
+    stretch_max: float = 0.0
+    continuity: float = 0.0
+    dog_angle: float = 0.0
+    handle_error: float = 0.0
+    iterations: int = 0
+    seconds: float = 0.0
+    memory_mb: float = 0.0
+    vertices: int = 0
+    off_flat: float | None = None
+    certified: bool = False
+    sentence: str = ""
+    drawing: str | None = None
+    ok: bool = False
+
+
+def do(job: Job) -> Run:
+    """Do one job. What the project refuses is a status; anything else that is raised is a crash."""
+    run = Run(job.seed, drawing=job.drawing)
+    begin = time.perf_counter()
+    try:
+        if job.drawing is None:
+            drawing = make_drawing(job.seed)
+            run.family = drawing.family
+            net = solver.build_net(drawing.pattern, drawing.resolution)
+            _drag(run, drawing.pattern, net, make_drag(job.seed, drawing, net))
+        else:
+            run.family = Path(job.drawing).stem
+            pattern = solver.read_pattern(job.drawing)
+            net = solver.build_net(pattern, PROTOCOL_RESOLUTION)
+            _drag(run, pattern, net, protocol_drag(pattern))
+    except solver.CurvefoldError as error:
+        run.status, run.sentence = "refused", str(error)
+    except Exception as error:
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        run.status = "crash"
+        run.sentence = f"{type(error).__name__}: {error} ({Path(last.filename).name}:{last.lineno})"
+    run.seconds = time.perf_counter() - begin
+    run.memory_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    return run
+
+
+def _drag(run: Run, pattern: solver.CreasePattern, net: solver.PiecewiseDog, drag: Drag) -> None:
+    run.drag = f"{drag.kind}{' at once' if drag.frames == 1 else ''}"
+    run.feasible = drag.feasible
+    run.vertices = len(net.rest)
+    model = solver.FoldModel(net)
+    way = [(k + 1) / drag.frames for k in range(drag.frames)]
+    if drag.back:
+        way += [*way[-2::-1], 0.0]
+    if drag.kind == "protocol":
+        way += [1.0] * PROTOCOL_REST
+    for part in way:
+        model.set_handles(drag.handles(part))
+        report = model.advance(FRAME_ITERATIONS)
+        run.iterations += report.iterations
+    settles = drag.kind != "protocol"
+    while settles and model.status is solver.Status.RUNNING and run.iterations < MOST_ITERATIONS:
+        report = model.advance(FRAME_ITERATIONS)
+        run.iterations += report.iterations
+    x = model.positions
+    m = solver.measure(net, x)
+    description = solver.FoldDescription(
+        angle=None, handles=tuple(drag.handles(way[-1])), max_iterations=MOST_ITERATIONS
+    )
+    outcome, run.sentence = judge(description, net, model, report, m)
+    run.status = outcome.name.lower().replace("_", " ")
+    run.reached = bool(report.handle_error <= REACHED * net.frame.unit)
+    run.folded = m.folded_part
+    run.fold_angle = [round(angle, 3) for angle in fold_angle_quantiles(m)]
+    run.stretch_mean, run.stretch_max = float(m.stretch.mean()), float(m.stretch.max())
+    run.continuity = float(m.continuity.max(initial=0.0))
+    run.dog_angle = float(m.dog_angle.max(initial=0.0))
+    run.handle_error = float(report.handle_error / net.frame.unit)
+    run.certified = solver.verify(net, x).ok
+    whole = run.reached and run.folded == 1.0 and run.stretch_mean < MAX_MEAN_STRETCH
+    if drag.back:
+        run.off_flat = _off_flat(net, x)
+        run.ok = run.reached and run.off_flat < FLAT_AGAIN
+        if not run.ok:
+            run.sentence = f"{run.off_flat:.1e} of the longer side off flat after there and back"
+    elif drag.kind == "protocol":
+        run.ok = run.reached and run.folded == 1.0
+        run.status = "folded" if run.ok else run.status
+    else:
+        run.ok = whole and outcome.ok if drag.feasible else outcome is solver.Outcome.OUT_OF_REACH
+
+
+def _off_flat(net: solver.PiecewiseDog, x: FloatArray) -> float:
+    """Largest distance of a vertex from the flat sheet laid on it as well as it goes, part of the longer side."""
+    flat = np.column_stack([net.rest, np.zeros(len(net.rest))])
+    a, b = x - x.mean(axis=0), flat - flat.mean(axis=0)
+    u, _, vt = np.linalg.svd(a.T @ b)
+    u[:, 2] *= np.sign(np.linalg.det(u @ vt))
+    size = float(np.ptp(net.rest, axis=0).max())
+    return float(np.linalg.norm(a @ u @ vt - b, axis=1).max()) / size

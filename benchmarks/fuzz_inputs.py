@@ -1,0 +1,225 @@
+"""Hostile input for every door of the solver: made of true files, spoilt, and of pieces that readers stumble on."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import solver
+from solver.description import FoldDescription
+from solver.pattern.reading import READERS
+
+FOLDER = Path(__file__).resolve().parents[1] / "sample_patterns"
+#: Quads along the longer side of the net that is made of every drawing that can be read.
+RESOLUTION = 6
+
+_NUMBERS = [
+    "0", "-0", "1", "-1", "50", "1e3", "1e-9", "1e308", "-1e308", "1e999", "nan", "inf", "-inf", ".", "-", "1e",
+    "0x10", "1.2.3", "١٢", "1,", ",1", "%", "50%", "3mm", "2in", "1em",
+]  # fmt: skip
+_NUMBERS.append("9" * 400)
+_COLOURS = [
+    "red", "#f00", "#00f", "black", "none", "url(#g)", "rgb(1,2,3)", "rgb(", "currentColor", "inherit",
+    "hsl(1e999,0%,0%)", "#", "#ff", "var(--x)",
+]  # fmt: skip
+_COLOURS.append("")
+_TRANSFORMS = [
+    "translate(3)", "scale(0)", "scale(1e200)", "matrix(1 2 3)", "matrix(0 0 0 0 0 0)", "rotate(45 1 1)",
+    "skewX(90)", "matrix(1 0 0 1 nan 0)", "scale(-1 1)", "rotate(", "translate(1e308 1e308)",
+]  # fmt: skip
+_NAMES = [
+    "mountain",
+    "valley",
+    "border",
+    "cut",
+    "hole",
+    "facet",
+    "",
+    "M",
+    "../../x",
+    "é",
+    "a b c",
+    "\x01",
+    "]]>",
+    "<",
+]
+_TAGS = ["path", "line", "rect", "circle", "ellipse", "polygon", "polyline", "g", "use", "symbol", "svg", "text",
+         "image", "style", "defs", "clipPath", "unknown"]  # fmt: skip
+_HEADS = [
+    '<?xml version="1.0"?>',
+    '<?xml version="1.0" encoding="utf-16"?>',
+    "\ufeff",
+    "",
+    '<!DOCTYPE svg [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;&a;&a;">]>',
+    '<!DOCTYPE svg SYSTEM "file:///etc/passwd">',
+]
+_ATTRIBUTES = [
+    "d", "points", "x", "y", "width", "height", "r", "rx", "cx", "x1", "y2", "stroke", "fill", "style", "class",
+    "id", "transform", "href", "viewBox", "stroke-dasharray", "display", "opacity",
+]  # fmt: skip
+
+
+def _attribute(rng: Random) -> str:
+    name = rng.choice(_ATTRIBUTES)
+    if name == "d":
+        value = " ".join(
+            rng.choice("MmLlHhVvCcSsQqTtAaZzX") + " " + " ".join(_number(rng) for _ in range(rng.randrange(8)))
+            for _ in range(rng.randrange(7))
+        )
+    elif name in ("points", "viewBox", "stroke-dasharray"):
+        value = rng.choice([" ", ","]).join(_number(rng) for _ in range(rng.randrange(9)))
+    elif name in ("stroke", "fill"):
+        value = rng.choice(_COLOURS)
+    elif name == "style":
+        value = ";".join(f"{rng.choice(['stroke', 'fill', 'x', ''])}:{rng.choice(_COLOURS)}" for _ in range(3))
+    elif name == "transform":
+        value = " ".join(rng.choice(_TRANSFORMS) for _ in range(rng.randrange(1, 4)))
+    elif name == "href":
+        value = rng.choice(
+            ["#a", "#b", "", "#", "http://example.invalid/x.svg#a", "file:///etc/passwd", "javascript:1"]
+        )
+    elif name in ("class", "id"):
+        value = rng.choice([*_NAMES, "a", "b"])
+    else:
+        value = _number(rng)
+    quoted = value.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
+    return f'{name}="{quoted}"'
+
+
+def _number(rng: Random) -> str:
+    return rng.choice(_NUMBERS) if rng.random() < 0.25 else f"{rng.uniform(-20, 120):.{rng.randrange(4)}f}"
+
+
+def _element(rng: Random, depth: int) -> str:
+    tag = rng.choice(_TAGS)
+    attributes = " ".join({a.split("=")[0]: a for a in (_attribute(rng) for _ in range(rng.randrange(6)))}.values())
+    inside = "".join(_element(rng, depth + 1) for _ in range(rng.randrange(4))) if depth < 4 else ""
+    if tag == "style":
+        inside = rng.choice(
+            [".a{stroke:red}", "path{stroke", "*{fill:none}", "@import url(x);", "a b c d e{x:y}" * 20]
+        )
+    return f"<{tag} {attributes}>{inside}</{tag}>"
+
+
+def made_svg(rng: Random) -> bytes:
+    """An SVG file out of odd pieces, around a sheet and a crease that would do."""
+    good = (
+        '<rect width="100" height="100" stroke="black" fill="none"/>'
+        '<path d="M0 40 Q50 70 100 40" stroke="red" fill="none"/>'
+    )
+    body = "".join(_element(rng, 0) for _ in range(rng.randrange(1, 5)))
+    space = rng.choice(['xmlns="http://www.w3.org/2000/svg"', ""])
+    return (f'{rng.choice(_HEADS)}<svg {space} viewBox="0 0 100 100">{good if rng.random() < 0.7 else ""}{body}'
+            f"</svg>").encode(rng.choice(["utf-8", "utf-8", "utf-8", "utf-16", "latin-1"]), "replace")  # fmt: skip
+
+
+def spoilt(rng: Random, data: bytes) -> bytes:
+    """A true file with bytes changed, dropped, repeated or cut off."""
+    array = bytearray(data)
+    for _ in range(rng.randrange(1, 6)):
+        at = rng.randrange(len(array) + 1)
+        size = rng.choice([1, 1, 2, 8, 40])
+        kind = rng.randrange(5)
+        if kind == 0 and array:
+            array[at % len(array)] = rng.randrange(256)
+        elif kind == 1:
+            del array[at : at + size]
+        elif kind == 2:
+            array[at:at] = array[at : at + size] * rng.choice([1, 2, 30])
+        elif kind == 3:
+            array[at:at] = rng.choice(_NUMBERS).encode()
+        else:
+            del array[at + size * 20 :]
+    return bytes(array)
+
+
+def _value(rng: Random, depth: int = 0) -> Any:
+    simple = [0, 1, -1, 0.5, 1e308, 10**40, float("nan"), float("inf"), True, None, "", "60", "V", [], {}]
+    if depth > 3 or rng.random() < 0.6:
+        return rng.choice(simple)
+    if rng.random() < 0.5:
+        return [_value(rng, depth + 1) for _ in range(rng.randrange(4))]
+    keys = ["at", "target", "axes", "strength", "kind", "crease", "side", "degrees", "x", "bending", "handles"]
+    return {rng.choice(keys): _value(rng, depth + 1) for _ in range(rng.randrange(4))}
+
+
+def made_handles(rng: Random) -> bytes:
+    entries = [{"at": [rng.uniform(0, 9), 1.0], "target": [0.0, 1.0, _value(rng)]} for _ in range(rng.randrange(3))]
+    whole: Any = rng.choice(
+        [entries, _value(rng), [*entries, _value(rng)], [{"at": _value(rng), "target": _value(rng)}]]
+    )
+    text = json.dumps(whole)
+    return spoilt(rng, text.encode()) if rng.random() < 0.4 else text.encode()
+
+
+def made_description(rng: Random) -> bytes:
+    data = FoldDescription().to_json()
+    for _ in range(rng.randrange(1, 4)):
+        key = rng.choice([*data, "unknown", "controls", "handles"])
+        data[key] = _value(rng)
+    return json.dumps(data).encode()
+
+
+# --- what is done with it -------------------------------------------------------------------------------
+
+
+def _sample(rng: Random, suffix: str) -> bytes:
+    files = sorted(FOLDER.glob(f"*{suffix}"))
+    return rng.choice(files).read_bytes() if files else b"{}"
+
+
+def _drawing(suffix: str) -> Callable[[Random], bytes]:
+    def make(rng: Random) -> bytes:
+        if suffix == ".svg" and rng.random() < 0.5:
+            return made_svg(rng)
+        return spoilt(rng, _sample(rng, suffix))
+
+    return make
+
+
+def _read_drawing(suffix: str) -> Callable[[bytes, Path], None]:
+    def use(data: bytes, folder: Path) -> None:
+        path = folder / f"drawing{suffix}"
+        path.write_bytes(data)
+        solver.build_net(solver.read_pattern(path), RESOLUTION)
+
+    return use
+
+
+def _read_handles(data: bytes, folder: Path) -> None:
+    path = folder / "handles.json"
+    path.write_bytes(data)
+    solver.read_handles(path)
+
+
+def _read_description(data: bytes, folder: Path) -> None:
+    FoldDescription.from_json(json.loads(data))
+
+
+#: Name of a door -> what makes input for it, and what lets the input in.
+DOORS: dict[str, tuple[Callable[[Random], bytes], Callable[[bytes, Path], None]]] = {
+    **{suffix[1:]: (_drawing(suffix), _read_drawing(suffix)) for suffix in READERS},
+    "handles": (made_handles, _read_handles),
+    "description": (made_description, _read_description),
+}
+
+
+def attempt(door: str, data: bytes, folder: Path) -> None:
+    """Let data in by a door. What the project refuses is fine; everything else that is raised comes through."""
+    try:
+        DOORS[door][1](data, folder)
+    except solver.CurvefoldError as error:
+        if len(str(error).splitlines()) != 1:
+            raise AssertionError(f"more than one line: {error}") from error
+    strange = [path.name for path in folder.iterdir() if path.stem not in ("drawing", "handles")]
+    if strange:
+        raise AssertionError(f"wrote {strange}")
+
+
+def scratch() -> tempfile.TemporaryDirectory[str]:
+    """A folder of its own."""
+    return tempfile.TemporaryDirectory(prefix="curvefold-fuzz-")

@@ -1,0 +1,81 @@
+"""Hostile input by every door: what is refused is refused by the project's own errors, quickly, in one line."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import time
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import solver
+from benchmarks.fuzz_inputs import DOORS, attempt, made_svg, scratch
+from solver.description import parse_handles
+
+#: Inputs for each door; ``python -m benchmarks.fuzz`` makes as many as one likes.
+FEW = settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+ANY_JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=8), inner, max_size=4),
+    max_leaves=12,
+)
+
+
+@pytest.mark.parametrize("door", DOORS)
+@FEW
+@given(rng=st.randoms(use_true_random=False))
+def test_spoilt_files_are_refused_or_read(door: str, rng: Random) -> None:
+    with scratch() as folder:
+        attempt(door, DOORS[door][0](rng), Path(folder))
+
+
+@pytest.mark.parametrize("door", DOORS)
+@FEW
+@given(data=st.binary(max_size=300))
+def test_any_bytes_are_refused(door: str, data: bytes) -> None:
+    if door == "description":
+        data = json.dumps(data.decode("latin-1")).encode()
+    with scratch() as folder:
+        attempt(door, data, Path(folder))
+
+
+@FEW
+@given(data=ANY_JSON)
+def test_any_json_is_a_description_or_handles_or_refused(data: Any) -> None:
+    for read in (solver.FoldDescription.from_json, parse_handles):
+        with contextlib.suppress(solver.CurvefoldError):
+            read(data)
+
+
+def test_the_generator_reaches_the_net() -> None:
+    """A fuzzer whose input is always refused at the first line tests nothing."""
+    read, refused = 0, set()
+    with scratch() as folder:
+        for seed in range(60):
+            path = Path(folder) / "drawing.svg"
+            path.write_bytes(made_svg(Random(seed)))
+            try:
+                solver.read_pattern(path)
+                read += 1
+            except solver.CurvefoldError as error:
+                refused.add(type(error))
+    assert read >= 10
+    assert refused >= {solver.ReadError, solver.PatternError}
+
+
+BOMB = '<!DOCTYPE svg [<!ENTITY a "{}">{}]><svg xmlns="http://www.w3.org/2000/svg">&z;</svg>'
+
+
+def test_entities_are_not_expanded(tmp_path: Path) -> None:
+    levels = "".join(f'<!ENTITY {chr(98 + k)} "{(f"&{chr(97 + k)};") * 10}">' for k in range(25))
+    path = tmp_path / "bomb.svg"
+    path.write_text(BOMB.format("a" * 10, levels), encoding="utf-8")
+    start = time.process_time()
+    with pytest.raises(solver.ReadError, match="entity"):
+        solver.read_pattern(path)
+    assert time.process_time() - start < 60  # expanded it would never end
