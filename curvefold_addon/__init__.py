@@ -4,14 +4,16 @@
 
 
 def register() -> None:
-    from . import cli, operators
-
-    operators.register()
-    cli.register()
+    for module in _modules():
+        module.register()
 
 
 def unregister() -> None:
-    from . import cli, operators
+    for module in reversed(_modules()):
+        module.unregister()
 
-    cli.unregister()
-    operators.unregister()
+
+def _modules():
+    from . import cli, drop_drawing, handlers, operators, overlay, panels, preferences, properties
+
+    return (properties, preferences, operators, drop_drawing, cli, handlers, overlay, panels)

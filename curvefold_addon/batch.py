@@ -250,11 +250,13 @@ def _worker_command() -> tuple[list[str], dict[str, str]]:
 def _tasks(drawings: list[Path], out: Path, render: bool, options: list[str]) -> Iterator[Task]:
     used: set[str] = set()
     for drawing in drawings:
-        name, number = drawing.stem, 1
+        # "...svg" has the stem "..": no name may lead out of the folder.
+        stem = drawing.stem if drawing.stem.strip(".") else "drawing"
+        name, number = stem, 1
         # Case does not tell folders apart everywhere.
         while name.lower() in used:
             number += 1
-            name = f"{drawing.stem}-{number}"
+            name = f"{stem}-{number}"
         used.add(name.lower())
         picture = PICTURE if render else THUMBNAIL
         extra = () if render else THUMBNAIL_OPTIONS

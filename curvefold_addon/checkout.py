@@ -10,7 +10,7 @@ NAME = "curvefold"
 PACKAGE = f"bl_ext.{REPOSITORY}.{NAME}"
 
 #: What the extension consists of; the manifest is copied, not linked.
-_PARTS = ("__init__.py", "curvefold_addon", "solver")
+_PARTS = ("__init__.py", "curvefold_addon", "sample_patterns", "solver")
 _MANIFEST = "blender_manifest.toml"
 
 

@@ -15,7 +15,7 @@ import bpy
 from .. import solver
 from ..solver import command_line
 from . import batch, paper_material, scene
-from .bridge import mesh, state
+from .bridge import mesh, papers
 from .whole_files import OutputError, check_writable, whole_file
 
 COMMAND = "curvefold"
@@ -84,7 +84,7 @@ def _show(result: solver.FoldResult, arguments: argparse.Namespace) -> None:
     # An empty file, whatever the user's start-up file holds; the extension stays enabled.
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     paper = mesh.add_paper(result, bpy.context.scene.collection, paper_material.paper_material())
-    state.store(paper.data, result)
+    papers.keep(paper.data, result)
     width, height = arguments.size
     scene.set_up(paper, scene.PictureSettings(width, height, arguments.samples, arguments.threads))
     if arguments.render:

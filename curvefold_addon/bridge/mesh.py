@@ -8,8 +8,10 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solver.net.carry_over import scaled
+
 if TYPE_CHECKING:
-    from ...solver import FoldResult
+    from ...solver import FoldResult, RenderMap
 
 #: The UV map that holds the flat sheet in metres.
 FLAT_UV = "flat"
@@ -32,7 +34,11 @@ def metres_per_unit(unit_mm: float | None) -> float:
 
 def add_paper(result: FoldResult, collection: Any, material: Any) -> Any:
     """A new object of the folded sheet in ``collection``, in true scale."""
-    mesh = build_mesh(result)
+    return add_object(build_mesh(result), collection, material)
+
+
+def add_object(mesh: Any, collection: Any, material: Any) -> Any:
+    """A new object of a paper's mesh in ``collection``."""
     if material is not None:
         mesh.materials.append(material)
     paper = bpy.data.objects.new(mesh.name, mesh)
@@ -42,32 +48,37 @@ def add_paper(result: FoldResult, collection: Any, material: Any) -> Any:
 
 def build_mesh(result: FoldResult) -> Any:
     """A new mesh datablock of the folded sheet, in metres."""
-    surface = result.net.render_map
     scale = metres_per_unit(result.pattern.unit_mm)
     mesh = bpy.data.meshes.new(result.pattern.name or "Paper")
-    positions = surface.apply(result.positions) * scale
+    fill(mesh, scaled(result.net, scale).render_map, result.positions * scale)
+    return mesh
+
+
+def fill(mesh: Any, surface: RenderMap, positions: NDArray[np.float64]) -> None:
+    """Gives a mesh the geometry of a net at positions (V,3) in place of its own; the flat sheet becomes its UVs."""
+    mesh.clear_geometry()
     corners = np.asarray(surface.face_vertices, dtype=np.int32)
     starts = np.asarray(surface.face_start[:-1], dtype=np.int32)
+    shown = surface.apply(positions)
 
-    mesh.vertices.add(len(positions))
+    mesh.vertices.add(len(shown))
     mesh.loops.add(len(corners))
     mesh.polygons.add(len(starts))
     mesh.polygons.foreach_set("loop_start", starts)
     mesh.loops.foreach_set("vertex_index", corners)
     mesh.update(calc_edges=True)
-    write_positions(mesh, positions)
+    write_positions(mesh, shown)
 
     flat = mesh.uv_layers.new(name=FLAT_UV)
-    flat.uv.foreach_set("vector", _single(surface.uv[corners] * scale))
+    flat.uv.foreach_set("vector", _single(surface.uv[corners]))
     patch = mesh.attributes.new(PATCH, "INT", "FACE")
     patch.data.foreach_set("value", np.asarray(surface.face_patch, dtype=np.int32))
     _mark_creases(mesh, surface.crease_edges, surface.crease_edge_crease)
     mesh.update()
-    return mesh
 
 
 def write_positions(mesh: Any, positions: NDArray[np.float64]) -> None:
-    """New vertex positions (R,3), metres."""
+    """New vertex positions (R,3), the paper's units."""
     mesh.attributes["position"].data.foreach_set("vector", _single(positions))
     if len(mesh.vertices):
         # foreach_set on the attribute leaves the bounding box stale in 4.2 to 5.0; one plain write does not.

@@ -1,52 +1,101 @@
-"""What a .blend must keep to be folded on: the net's exact coordinates, the drawing, and what was asked.
+"""What a .blend must keep for a paper to be folded on: the net's exact coordinates and what it is made from.
 
 The shown mesh cannot restore the net (single precision, and the hidden parts of the net are not in it), so
-the net's own coordinates lie beside it as an ID property, bit for bit.
+the net's own coordinates lie beside it as an ID property, bit for bit. Settings and handles are ``Mesh.curvefold``.
 """
 
 from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from ...solver import CreasePattern, FoldResult
+from ...solver import Crease, CreasePattern
 
 #: Counts up when what is stored changes its meaning.
-FORMAT = 1
+FORMAT = 2
 
 _FORMAT = "curvefold_format"
 _POSITIONS = "curvefold_positions"
-_DESCRIPTION = "curvefold_description"
 _PATTERN = "curvefold_pattern"
+_RESOLUTION = "curvefold_resolution"
+_SCALE = "curvefold_scale"
+_RUN = "curvefold_run"
+_REST = "curvefold_rest"
 
 
 class StateError(ValueError):
     """A mesh does not carry a fold, or one that this version cannot read."""
 
 
-@dataclass(frozen=True, eq=False)
-class StoredFold:
-    """positions (V,3) of the net in drawing units; description and pattern as plain data.
+@dataclass(frozen=True)
+class Source:
+    """What a net is made from, and all of it: equal sources make equal nets.
 
-    ``solver.FoldDescription.from_json`` reads the description.
+    pattern: the drawing as JSON; resolution: quads along the longer side; scale: the paper's units in one of the
+    drawing's.
     """
 
+    pattern: str
+    resolution: int
+    scale: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class StoredShape:
+    """positions (V,3) of the net in the paper's units; run: the name of the last motion, or empty.
+
+    rest: what the paper was told when it came to rest, as numbers (``hooks.Inputs.numbers``); None in mid-motion.
+    """
+
+    source: Source
     positions: NDArray[np.float64]
-    description: dict[str, Any]
-    pattern: dict[str, Any]
+    run: str
+    rest: NDArray[np.float64] | None
 
 
-def store(mesh: Any, result: FoldResult) -> None:
-    """Keeps a fold on the mesh datablock that shows it."""
+def source_of(pattern: CreasePattern, resolution: int, scale: float = 1.0) -> Source:
+    """The source of ``build_net(pattern, resolution)``."""
+    return Source(json.dumps(_pattern_data(pattern), default=_plain), int(resolution), float(scale))
+
+
+def pattern_of(source: Source) -> CreasePattern:
+    """The drawing again, to the last bit."""
+    data = json.loads(source.pattern)
+    creases = [
+        Crease(entry["points"], entry["closed"], entry["assignment"], entry["name"], entry["beziers"])
+        for entry in data["creases"]
+    ]
+    return CreasePattern(data["boundary"], data["holes"], creases, data["name"], data["unit_mm"], data["notes"])
+
+
+def store(mesh: Any, source: Source, positions: NDArray[np.float64]) -> None:
+    """Keeps a new net and its positions (V,3), the paper's units, on the mesh that shows it."""
     mesh[_FORMAT] = FORMAT
-    mesh[_POSITIONS] = np.ascontiguousarray(result.positions, dtype=np.float64).ravel()
-    mesh[_DESCRIPTION] = json.dumps(result.description.to_json())
-    mesh[_PATTERN] = json.dumps(_pattern_data(result.pattern), default=_plain)
+    mesh[_PATTERN] = source.pattern
+    mesh[_RESOLUTION] = source.resolution
+    mesh[_SCALE] = source.scale
+    store_positions(mesh, positions)
+
+
+def store_positions(mesh: Any, positions: NDArray[np.float64]) -> None:
+    """Keeps the shape, and that it is one in mid-motion."""
+    _keep_array(mesh, _POSITIONS, positions)
+    if _REST in mesh:
+        del mesh[_REST]
+
+
+def store_run(mesh: Any, run: str) -> None:
+    """Names the motion that begins."""
+    mesh[_RUN] = run
+
+
+def store_rest(mesh: Any, numbers: NDArray[np.float64]) -> None:
+    """Keeps what the paper was told when it came to rest."""
+    _keep_array(mesh, _REST, numbers)
 
 
 def is_stored(mesh: Any) -> bool:
@@ -54,14 +103,30 @@ def is_stored(mesh: Any) -> bool:
     return _FORMAT in mesh
 
 
-def load(mesh: Any) -> StoredFold:
-    """What ``store`` kept."""
+def load_source(mesh: Any) -> Source:
+    """What the stored net is made from. Raises StateError."""
     if not is_stored(mesh):
         raise StateError(f"{mesh.name} carries no fold")
-    if mesh[_FORMAT] > FORMAT:
-        raise StateError(f"{mesh.name} was folded by a newer version of Curvefold")
+    if mesh[_FORMAT] != FORMAT:
+        age = "a newer" if mesh[_FORMAT] > FORMAT else "an older"
+        raise StateError(f"{mesh.name} was folded by {age} version of Curvefold")
+    return Source(mesh[_PATTERN], mesh[_RESOLUTION], mesh[_SCALE])
+
+
+def load(mesh: Any) -> StoredShape:
+    """What is stored. Raises StateError."""
+    source = load_source(mesh)
     positions = np.frombuffer(mesh[_POSITIONS], dtype=np.float64).reshape(-1, 3).copy()
-    return StoredFold(positions, json.loads(mesh[_DESCRIPTION]), json.loads(mesh[_PATTERN]))
+    rest = np.frombuffer(mesh[_REST], dtype=np.float64).copy() if _REST in mesh else None
+    return StoredShape(source, positions, mesh.get(_RUN, ""), rest)
+
+
+def _keep_array(mesh: Any, key: str, values: NDArray[np.float64]) -> None:
+    flat = np.ascontiguousarray(values, dtype=np.float64).ravel()
+    # Blender (4.2 to 5.2) writes an array of another length into the memory of the old one.
+    if key in mesh and len(mesh[key]) != len(flat):
+        del mesh[key]
+    mesh[key] = flat
 
 
 def _pattern_data(pattern: CreasePattern) -> dict[str, Any]:
@@ -80,6 +145,7 @@ def _pattern_data(pattern: CreasePattern) -> dict[str, Any]:
             }
             for crease in pattern.creases
         ],
+        "notes": list(pattern.notes),
     }
 
 

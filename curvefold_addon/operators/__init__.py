@@ -1,8 +1,54 @@
 """The operators, one a file."""
 
-from . import fold_drawing
+from . import (
+    add_handles,
+    add_joint,
+    add_sample,
+    add_sheet,
+    bake,
+    crease_sides,
+    draw_crease,
+    flatten,
+    fold_drawing,
+    follow,
+    hook_object,
+    import_drawing,
+    make_crease,
+    make_paper,
+    pick_crease,
+    pin,
+    place_handle,
+    remove_handle,
+    set_assignment,
+    settle,
+    sheet_from_object,
+    usual_weights,
+)
 
-_MODULES = (fold_drawing,)
+_MODULES = (
+    add_sheet,
+    add_sample,
+    sheet_from_object,
+    draw_crease,
+    make_crease,
+    set_assignment,
+    import_drawing,
+    fold_drawing,
+    make_paper,
+    place_handle,
+    add_handles,
+    hook_object,
+    pin,
+    remove_handle,
+    crease_sides,
+    pick_crease,
+    add_joint,
+    usual_weights,
+    flatten,
+    settle,
+    bake,
+    follow,
+)
 
 
 def register() -> None:

@@ -8,7 +8,7 @@ from bpy.props import FloatProperty, IntProperty, StringProperty
 
 from ... import solver
 from .. import paper_material
-from ..bridge import mesh, state
+from ..bridge import mesh, papers
 
 
 class FoldDrawing(bpy.types.Operator):
@@ -54,7 +54,7 @@ class FoldDrawing(bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         paper = mesh.add_paper(result, context.collection, paper_material.paper_material())
-        state.store(paper.data, result)
+        papers.keep(paper.data, result)
         for other in context.selected_objects:
             other.select_set(False)
         paper.select_set(True)

@@ -92,3 +92,28 @@ def folded(extension: Callable[[str], ModuleType], tmp_path_factory: pytest.Temp
     path = tmp_path_factory.mktemp("folded") / "arc.svg"
     path.write_text(ARC)
     return solver.fold(solver.read_pattern(path), solver.FoldDescription(resolution=12, angle=60.0))
+
+
+@pytest.fixture
+def sheet(extension: Callable[[str], ModuleType], drawing: Path) -> object:
+    """That square as a drawing in the scene, active."""
+    import bpy
+
+    pattern = extension("solver").read_pattern(drawing)
+    item = extension("curvefold_addon.bridge.drawing").add_drawing(pattern, bpy.context.collection)
+    bpy.context.view_layer.objects.active = item
+    return item
+
+
+@pytest.fixture
+def paper(sheet: object) -> object:
+    """A live paper of it, flat and active."""
+    import bpy
+
+    assert bpy.ops.curvefold.make_paper(resolution=12) == {"FINISHED"}
+    return bpy.context.active_object
+
+
+@pytest.fixture
+def live(extension: Callable[[str], ModuleType]) -> ModuleType:
+    return extension("curvefold_addon.live")

@@ -14,8 +14,8 @@ def test_adds_the_paper_and_can_be_undone(drawing):
     assert done == {"FINISHED"}
     paper = bpy.context.view_layer.objects.active
     assert paper.select_get()
-    assert paper.data["curvefold_format"] == 1
-    assert '"angle": 50' in paper.data["curvefold_description"]
+    assert paper.data.curvefold.is_paper
+    assert paper.data.curvefold.angle == pytest.approx(radians(50))
     assert paper.data.materials[0].name == "Curvefold Paper"
     bpy.ops.ed.undo()
     assert not bpy.data.objects

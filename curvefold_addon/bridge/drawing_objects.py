@@ -1,0 +1,125 @@
+"""The objects of a drawing: how sheets and creases are made, marked, found and told apart by eye."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import bpy
+
+SHEET, CREASE = "SHEET", "CREASE"
+
+#: Radius of a crease's line, relative to the sheet's longer side: that of a felt pen on a letter.
+LINE = 3e-3
+
+Color = tuple[float, float, float, float]
+
+#: Name of the look and its scene-linear colour, for FOLD's letters.
+LOOKS: dict[str, tuple[str, Color]] = {
+    "M": ("Curvefold Mountain", (1.0, 0.08, 0.05, 1.0)),
+    "V": ("Curvefold Valley", (0.06, 0.30, 1.0, 1.0)),
+    "U": ("Curvefold Free Crease", (0.60, 0.22, 1.0, 1.0)),
+    "F": ("Curvefold Flat Crease", (0.45, 0.45, 0.45, 1.0)),
+}
+
+
+def new_curve(name: str) -> Any:
+    """A planar Curve datablock that shows lines and no faces."""
+    curve = bpy.data.curves.new(name, "CURVE")
+    curve.dimensions = "2D"
+    curve.fill_mode = "NONE"
+    # As fine as a paper that follows it.
+    curve.resolution_u = 24
+    return curve
+
+
+def remove_curve(curve: Any) -> None:
+    """Takes back ``new_curve``."""
+    bpy.data.curves.remove(curve)
+
+
+def new_sheet(curve: Any, collection: Any) -> Any:
+    """A sheet whose border is ``curve``, at the world's origin."""
+    sheet = bpy.data.objects.new(curve.name, curve)
+    collection.objects.link(sheet)
+    mark_sheet(sheet)
+    return sheet
+
+
+def mark_sheet(sheet: Any) -> None:
+    """Makes a Curve object a sheet."""
+    sheet.curvefold.role = SHEET
+    # A drawing is a tool, not a part of the picture.
+    sheet.hide_render = True
+
+
+def new_crease(curve: Any, sheet: Any, assignment: str, line: float) -> Any:
+    """A crease of a sheet, in the sheet's own coordinates; ``line`` is the radius of its line."""
+    crease = bpy.data.objects.new(curve.name, curve)
+    for collection in sheet.users_collection:
+        collection.objects.link(crease)
+    crease.parent = sheet
+    mark_crease(crease, assignment, line)
+    return crease
+
+
+def mark_crease(crease: Any, assignment: str, line: float) -> None:
+    """Makes a Curve object a crease of its parent."""
+    crease.curvefold.role = CREASE
+    crease.curvefold.assignment = assignment
+    crease.hide_render = True
+    curve = crease.data
+    if curve.bevel_depth == 0.0 and curve.bevel_mode == "ROUND":
+        # Blender shows the colour of a line only when it has a thickness.
+        curve.bevel_depth = line
+        curve.bevel_resolution = 1
+    show_assignment(crease)
+
+
+def show_assignment(crease: Any) -> None:
+    """Colours a crease as its assignment says."""
+    name, color = LOOKS[crease.curvefold.assignment]
+    material = bpy.data.materials.get(name)
+    if material is None:
+        material = bpy.data.materials.new(name)
+        material.diffuse_color = color
+    crease.color = color
+    if not crease.data.materials:
+        crease.data.materials.append(None)
+    # On the object: creases that share a curve may differ.
+    slot = crease.material_slots[0]
+    slot.link = "OBJECT"
+    slot.material = material
+
+
+def is_sheet(candidate: Any) -> bool:
+    return bool(candidate.curvefold.role == SHEET)
+
+
+def is_crease(candidate: Any) -> bool:
+    return bool(candidate.curvefold.role == CREASE)
+
+
+def sheet_of(crease: Any) -> Any:
+    """The sheet that an object lies on, directly or below other objects; None when there is none."""
+    node = crease.parent
+    while node is not None and not is_sheet(node):
+        node = node.parent
+    return node
+
+
+def creases_of(sheet: Any) -> list[Any]:
+    """The crease objects of a sheet, by name (2 before 10), leaving out deleted ones."""
+    below = [child for child in sheet.children_recursive if is_crease(child) and sheet_of(child) == sheet]
+    scenes = sheet.users_scene
+    if scenes:
+        # An object that something else still refers to outlives its deletion, but in no scene.
+        present = {item for scene in scenes for item in scene.objects}
+        below = [child for child in below if child in present]
+    return sorted(below, key=lambda child: _natural(child.name))
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """Sorts numbers by value."""
+    parts = re.split(r"(\d+)", name)
+    return [(int(part), "") if part.isdecimal() else (-1, part) for part in parts]

@@ -1,0 +1,75 @@
+"""Papers as datablocks: made from a drawing, or from a fold that the command line has made."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+from ...solver import Crease, CreasePattern, Handle, Status
+from . import controls, hooks, state
+from . import mesh as surface
+from .session import Session, drawn_of
+
+if TYPE_CHECKING:
+    from ...solver import FoldResult
+
+
+def new_paper(name: str, collection: Any, material: Any) -> Any:
+    """A new object for a paper, without geometry yet."""
+    return surface.add_object(bpy.data.meshes.new(name), collection, material)
+
+
+def show(mesh: Any, session: Session) -> None:
+    """Gives a mesh the net and the shape of a session, to be seen and to be kept."""
+    surface.fill(mesh, session.net.render_map, session.positions)
+    state.store(mesh, session.source, session.positions)
+
+
+def show_positions(mesh: Any, session: Session) -> None:
+    """Shows the shape of a session on a mesh that has its geometry."""
+    surface.write_positions(mesh, session.net.render_map.apply(session.positions))
+
+
+def keep(mesh: Any, result: FoldResult) -> None:
+    """Makes the mesh of a finished fold (``mesh.add_paper``) a live paper that rests in it."""
+    scale = surface.metres_per_unit(result.pattern.unit_mm)
+    description = result.description
+    settings = mesh.curvefold
+    settings.resolution = description.resolution
+    if description.angle is not None:
+        settings.angle = math.radians(description.angle)
+        settings.fold = 100.0
+    for number, handle in enumerate(description.handles, 1):
+        entry = settings.handles.add()
+        entry.name = f"Handle {number}"
+        entry.at = [c * scale for c in handle.at]
+        entry.offset = [c * scale for c in handle.target]
+        entry.pinned = True
+        entry.axes = handle.axes
+        entry.strength = handle.strength
+    settings.is_paper = True
+    pattern = result.pattern
+    if description.assignments == "free":
+        # It was folded as if the drawing named no sides, and so it goes on.
+        free = tuple(Crease(c.points, c.closed, "U", c.name, c.beziers) for c in pattern.creases)
+        pattern = CreasePattern(pattern.boundary, pattern.holes, free, pattern.name, pattern.unit_mm, pattern.notes)
+    source = state.source_of(pattern, description.resolution, scale)
+    state.store(mesh, source, result.positions * scale)
+    controls.match_creases(settings, drawn_of(source))
+    if result.last.status is Status.SETTLED:
+        state.store_rest(mesh, _told(settings, source).numbers())
+
+
+def _told(settings: Any, source: state.Source) -> hooks.Inputs:
+    """What ``hooks.read`` says of a paper whose handles are all pins."""
+    handles = tuple(
+        Handle(tuple(entry.at), tuple(entry.offset), tuple(entry.axes), entry.strength)
+        for entry in settings.handles
+    )
+    return hooks.with_controls(settings, settings, handles, drawn_of(source), _no_curve)
+
+
+def _no_curve(item: Any) -> tuple[controls.Place, ...]:
+    raise controls.CurveTargetError("no curve object")

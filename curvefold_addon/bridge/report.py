@@ -1,0 +1,148 @@
+"""What is going on with a paper, in numbers and in one sentence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ...solver.fold import ANGLE_REACHED, MAX_MEAN_STRETCH, fold_angle_quantiles
+from ...solver.folding import REACHED
+from ...solver.measurement import Measurement
+from .hooks import handle_label
+from .session import Session
+
+#: A paper whose points all lie within this of a plane is flat, net units.
+_FLAT = 1e-3
+
+
+@dataclass(frozen=True)
+class CreaseReport:
+    """found: M, V or U; fold_angle: median, degrees, None where it has no meaning; folded: at every point."""
+
+    label: str
+    found: str
+    fold_angle: float | None
+    folded: bool
+
+
+@dataclass(frozen=True)
+class Report:
+    """state: settled, folding or trouble; stretch: relative; fold_angle: median, degrees; milliseconds: for one
+    iteration; lacks: what is asked and cannot be had, sentences."""
+
+    state: str
+    sentence: str
+    stretch_mean: float
+    stretch_max: float
+    fold_angle: float
+    creases: tuple[CreaseReport, ...]
+    vertices: int
+    iterations: int
+    milliseconds: float
+    lacks: tuple[str, ...] = ()
+
+
+def describe_fault(fault: str) -> Report:
+    """The report of a paper that cannot be worked on."""
+    return Report("trouble", _sentence(fault), 0.0, 0.0, 0.0, (), 0, 0, 0.0)
+
+
+def describe(found: Session, settings: Any, fault: str, folding: bool, units: Any) -> Report:
+    """fault: why the paper cannot be folded as it is now, or empty; units: the scene's unit settings."""
+    m = found.measurement
+    creases = tuple(_crease(m, label, k) for k, label in enumerate(found.net.crease_labels))
+    median = fold_angle_quantiles(m)[1]
+    state, sentence = _standing(found, settings, fault, folding, units, creases, median)
+    return Report(
+        state,
+        _sentence(sentence),
+        float(m.stretch.mean()),
+        float(m.stretch.max()),
+        median,
+        creases,
+        len(found.net.rest),
+        found.iterations,
+        found.milliseconds,
+        tuple(_sentence(lack) for lack in _lacks(found)),
+    )
+
+
+def describe_crease(found: Session, index: int) -> CreaseReport | None:
+    """What became of one crease, as last measured; None when there is no such crease."""
+    labels = found.net.crease_labels
+    return _crease(found.measurement, labels[index], index) if index < len(labels) else None
+
+
+def _standing(
+    found: Session,
+    settings: Any,
+    fault: str,
+    folding: bool,
+    units: Any,
+    creases: tuple[CreaseReport, ...],
+    median: float,
+) -> tuple[str, str]:
+    inputs = found.inputs
+    if fault:
+        return "trouble", fault
+    if inputs is not None and inputs.faults:
+        return "trouble", inputs.faults[0]
+    if found.failed:
+        return "trouble", "the numbers ran away; the last good shape is kept"
+    asked = None if inputs is None else inputs.angle
+    if folding and found.rest is None:
+        return "folding", "folding…" if asked is None else f"folding: {median:.0f}° of {asked:.0f}°"
+    late = _late_handle(found, settings, units)
+    if late:
+        return "trouble", late
+    if np.ptp(found.positions[:, 2]) <= _FLAT * found.net.frame.unit:
+        return "settled", "flat"
+    lacks = _lacks(found)
+    if lacks:
+        return "trouble", lacks[0]
+    unfolded = [crease.label for crease in creases if not crease.folded]
+    if unfolded:
+        more = f" and {len(unfolded) - 1} more" if len(unfolded) > 1 else ""
+        return "trouble", f"{unfolded[0]}{more} not folded everywhere"
+    mean = float(found.measurement.stretch.mean())
+    if mean > MAX_MEAN_STRETCH:
+        return "trouble", f"the paper is stretched by {mean:.1%} in the mean, more than paper can be"
+    if asked is not None and median < ANGLE_REACHED * asked:
+        return "settled", f"settled at {median:.0f}° of {asked:.0f}°: the sheet allows no more"
+    return "settled", "settled"
+
+
+def _lacks(found: Session) -> tuple[str, ...]:
+    faults = () if found.inputs is None else found.inputs.faults
+    return (*faults, *found.refused, *found.findings)
+
+
+def _late_handle(found: Session, settings: Any, units: Any) -> str:
+    """Which handle is farthest from its target, when that is far."""
+    inputs = found.inputs
+    if inputs is None:
+        return ""
+    worst, label = REACHED * found.net.frame.unit, ""
+    for handle, index in zip(inputs.handles, inputs.indices, strict=True):
+        gap = np.subtract(found.place_of(handle.at), handle.target)[np.array(handle.axes)]
+        distance = float(np.linalg.norm(gap))
+        if distance > worst and index < len(settings.handles):
+            worst, label = distance, handle_label(settings, index)
+    if not label:
+        return ""
+    length = bpy.utils.units.to_string(units.system, "LENGTH", worst * units.scale_length, precision=2)
+    return f"{label} is {length.strip()} from its target: out of reach"
+
+
+def _crease(m: Measurement, label: str, index: int) -> CreaseReport:
+    mine = m.crease == index
+    known = m.fold_angle[mine & np.isfinite(m.fold_angle)]
+    angle = float(np.median(known)) if len(known) else None
+    return CreaseReport(label, m.side(index), angle, bool(m.folded[mine & m.asked].all()))
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]

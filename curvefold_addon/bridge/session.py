@@ -1,0 +1,340 @@
+"""A paper at work: a model that iterates in a thread of its own, and the shape that Blender shows of it.
+
+The thread touches the model and nothing of Blender (``worker``); what is here belongs to the main thread. It can
+be thrown away at any time: ``state`` keeps what it is made from.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import count
+from typing import Any
+from uuid import uuid4
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solver import Handle, HandleError, Measurement, PiecewiseDog, SqpReport, Status, build_net, measure
+from ...solver.net.carry_over import carry_over, scaled
+from . import mesh as surface
+from . import state, worker
+from .controls import DrawnCrease
+from .hooks import SAME_TARGET, WIDTH, Inputs, handles_begin, same
+from .worker import Step, Worker
+
+#: Nets that are kept although no paper shows them: undo and redo step back and forth between them.
+_KEPT_NETS = 8
+#: Ends of motions that are kept for undo and redo.
+_KEPT_ENDS = 64
+
+Array = NDArray[np.float64]
+
+#: No two shapes have the same version, of whatever session.
+_versions = count()
+
+
+def stop() -> None:
+    """Ends the thread and forgets what could be made again."""
+    worker.stop()
+    _ends.clear()
+    net_of.cache_clear()
+    drawn_of.cache_clear()
+
+
+@lru_cache(maxsize=_KEPT_NETS)
+def net_of(source: state.Source) -> PiecewiseDog:
+    """The net of a source, in the paper's units. Raises CurvefoldError."""
+    net = build_net(state.pattern_of(source), source.resolution)
+    return net if source.scale == 1.0 else scaled(net, source.scale)
+
+
+@lru_cache(maxsize=_KEPT_NETS)
+def drawn_of(source: state.Source) -> tuple[DrawnCrease, ...]:
+    """The creases as they are drawn."""
+    pattern = state.pattern_of(source)
+    creases = []
+    for k, crease in enumerate(pattern.creases):
+        first, last = ((float(x) * source.scale, float(y) * source.scale) for x, y in crease.points[[0, -1]])
+        creases.append(DrawnCrease(pattern.crease_label(k), crease.assignment, (first, last)))
+    return tuple(creases)
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """A shape that rests, and what it was told (``Inputs.numbers``)."""
+
+    numbers: Array
+    positions: Array
+    measurement: Measurement
+
+
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """A session at one moment, for another thread."""
+
+    net: PiecewiseDog
+    positions: Array
+    rest: Array | None
+
+
+class Session:
+    """net; positions (V,3) as last written to the mesh, the paper's units; version: another number for each shape.
+
+    rest         what the paper was told when it came to rest, None while it moves
+    before       the rest from which the present motion started
+    drawn        the creases as they are drawn
+    refused      why controls do not act that do not fit the paper, sentences
+    findings     what was asked and not reached, sentences
+    run          the name of the motion, in the .blend too; empty when it has none yet
+    frame        the last frame of an animation that the paper has followed
+    failed       whether the numbers ran away; the last good shape is kept
+    """
+
+    def __init__(self, source: state.Source, net: PiecewiseDog, positions: Array, rest: Array | None) -> None:
+        """In any thread: measures the shape, so that nobody has to wait for it later."""
+        self.source, self.net = source, net
+        self.drawn = drawn_of(source)
+        self.positions = positions
+        self.rest = rest
+        self.before: Rest | None = None
+        self.run = ""
+        self.version = next(_versions)
+        self.failed = False
+        self.inputs: Inputs | None = None
+        self.report: SqpReport | None = None
+        self.measurement = measure(net, positions)
+        self.findings: tuple[str, ...] = ()
+        self.refused: tuple[str, ...] = ()
+        self.iterations = 0
+        self.milliseconds = 0.0
+        self.frame: int | None = None
+        self._worker = Worker(net, positions)
+        self._taken: Step | None = None
+        self._counted = 0
+        self._written = positions
+        self._anew: Rest | None = None
+        self._off_sheet: dict[tuple[float, float], str] = {}
+
+    # --- asking ------------------------------------------------------------------------------------------
+
+    def why_not_at(self, at: tuple[float, float]) -> str:
+        """Why no handle can be at a point of the flat sheet; empty when one can."""
+        if at not in self._off_sheet:
+            try:
+                self.net.locate(at)
+                self._off_sheet[at] = ""
+            except HandleError as error:
+                self._off_sheet[at] = error.message
+        return self._off_sheet[at]
+
+    def place_of(self, at: tuple[float, float]) -> tuple[float, float, float]:
+        """Where a point of the flat sheet is now, in the paper's local coordinates. Raises HandleError."""
+        vertices, weights = self.net.locate(at)
+        x, y, z = (weights @ self.positions[vertices]).tolist()
+        return x, y, z
+
+    def found_sides(self) -> tuple[str, ...]:
+        """FOLD letter of what each crease is now."""
+        present = measure(self.net, self.positions)
+        return tuple(present.side(k) for k in range(len(self.drawn)))
+
+    def snapshot(self) -> Snapshot:
+        """What another net can take over."""
+        return Snapshot(self.net, self.positions, self.rest)
+
+    def rests_with(self, inputs: Inputs) -> bool:
+        """Whether the paper rests and is told nothing new, or only to hold points where they are."""
+        if self.rest is None:
+            return False
+        numbers = inputs.numbers()
+        if not same(self.rest, numbers, self.net.frame.unit):
+            known = numbers[: len(self.rest)]
+            if len(known) >= len(numbers) or not same(self.rest, known, self.net.frame.unit):
+                return False
+            more = inputs.handles[(len(self.rest) - handles_begin(self.rest)) // WIDTH :]
+            if not all(self._is_at(handle) for handle in more):
+                return False
+            self.rest = numbers
+        return True
+
+    def _is_at(self, handle: Handle) -> bool:
+        gaps = np.abs(np.subtract(self.place_of(handle.at), handle.target))
+        return bool(gaps.max() <= SAME_TARGET * self.net.frame.unit)
+
+    @property
+    def dirty(self) -> bool:
+        """Whether the mesh does not show ``positions`` yet."""
+        return self._written is not self.positions
+
+    # --- moving ------------------------------------------------------------------------------------------
+
+    def follow(self, inputs: Inputs, deadline: float) -> None:
+        """Iterates until the clock (``time.perf_counter``) says ``deadline`` or the paper rests.
+
+        The thread goes on afterwards. Raises what went wrong in it.
+        """
+        self.inputs = inputs
+        if self.rests_with(inputs):
+            return
+        self._leave_rest()
+        self._worker.work(inputs, deadline)
+        self._take(self._worker.newest)
+
+    def advance(self, inputs: Inputs, iterations: int) -> None:
+        """Exactly so many iterations, fewer when the paper comes to rest. Blocking."""
+        if self._worker.is_running:
+            # Where it stopped depends on the clock: from the shape that is shown, it does not.
+            self._begin_at(self.positions)
+        self.inputs = inputs
+        done = 0
+        while done < iterations and not self.rests_with(inputs):
+            self._leave_rest()
+            step = self._worker.advance(inputs, iterations - done)
+            self._take(step)
+            done += max(1, step.report.iterations)
+
+    def move_to(self, positions: Array, rest: Rest | None) -> None:
+        """Puts the paper somewhere else at once; at a rest when one is given."""
+        self._begin_at(positions)
+        self.rest = None if rest is None else rest.numbers
+        self.measurement = measure(self.net, positions) if rest is None else rest.measurement
+
+    def lay_flat(self) -> None:
+        """Puts the flat sheet in place of the shape."""
+        self.move_to(flat_positions(self.net), None)
+
+    def rest_if_flat(self, inputs: Inputs) -> None:
+        """A flat paper that is asked for nothing but to be flat has nothing to do."""
+        numbers = inputs.numbers()
+        targets = np.array([(*handle.at, 0.0) for handle in inputs.handles]).reshape(-1, 3)
+        places = np.array([handle.target for handle in inputs.handles]).reshape(-1, 3)
+        near = np.abs(targets - places).max(initial=0.0) <= SAME_TARGET * self.net.frame.unit
+        self.inputs = inputs
+        asked = inputs.angle or inputs.asks
+        if near and not asked and np.array_equal(self.positions, flat_positions(self.net)):
+            self.rest = numbers
+
+    def start_anew(self, inputs: Inputs, iterations: int) -> None:
+        """The shape that a flat sheet takes when it is told this, whatever the paper did before. Blocking."""
+        if self._anew is None or not np.array_equal(self._anew.numbers, inputs.numbers(), equal_nan=True):
+            self._worker.join()
+            self._worker = Worker(self.net, self.positions)
+            self.lay_flat()
+            self.advance(inputs, iterations)
+            self._anew = Rest(inputs.numbers(), self.positions, self.measurement)
+        self.inputs = inputs
+        self.move_to(self._anew.positions, self._anew)
+
+    def is_back_at_start(self, inputs: Inputs) -> bool:
+        """Whether the paper is told what it was told before it began to move: the hand took it back."""
+        if self.before is None or self.rest is not None:
+            return False
+        return same(self.before.numbers, inputs.numbers(), self.net.frame.unit)
+
+    def return_to_start(self) -> None:
+        """Back to the shape before the motion, bit for bit."""
+        if self.before is not None:
+            self.move_to(self.before.positions, self.before)
+
+    def reload(self, shape: state.StoredShape) -> None:
+        """Goes on from what a mesh carries; nothing is done when that is what is here."""
+        told = (self.rest is None) == (shape.rest is None) and (
+            self.rest is None or shape.rest is None or np.array_equal(self.rest, shape.rest, equal_nan=True)
+        )
+        if not (told and self.run == shape.run and np.array_equal(self.positions, shape.positions)):
+            self.move_to(shape.positions, None)
+            self.rest, self.run, self.before = shape.rest, shape.run, None
+            self.version = next(_versions)
+        self._written = self.positions
+
+    def _leave_rest(self) -> None:
+        if self.rest is None:
+            return
+        if self.before is None:
+            self.before = Rest(self.rest, self.positions, self.measurement)
+        self.rest, self.run, self.iterations = None, "", 0
+        if self.failed:
+            self._begin_at(self.positions)
+
+    def _begin_at(self, positions: Array) -> None:
+        self._worker = self._worker.again(positions)
+        self._taken, self._counted = None, 0
+        self.report, self.failed, self.findings, self.refused = None, False, (), ()
+        self.positions = positions
+
+    def _take(self, step: Step | None) -> None:
+        if step is None or step is self._taken:
+            return
+        self._taken = step
+        self.positions, self.report, self.findings = step.positions, step.report, step.findings
+        self.refused = step.refused
+        self.iterations += step.iterations - self._counted
+        self._counted = step.iterations
+        self.milliseconds = 1000.0 * step.seconds
+        self.measurement = step.measurement or self.measurement
+        self.failed = step.report.status is Status.NOT_FINITE
+        self.rest = step.told.numbers() if step.rests else None
+
+    # --- showing -----------------------------------------------------------------------------------------
+
+    def write(self, mesh: Any) -> None:
+        """Shows the present shape and keeps it on the datablock."""
+        if self.dirty:
+            surface.write_positions(mesh, self.net.render_map.apply(self.positions))
+            state.store_positions(mesh, self.positions)
+            self._written = self.positions
+            self.version = next(_versions)
+        if not self.run:
+            self.run = uuid4().hex
+            state.store_run(mesh, self.run)
+        if self.rest is not None:
+            state.store_rest(mesh, self.rest)
+            _ends[self.run] = (self.source, Rest(self.rest, self.positions, self.measurement))
+            while len(_ends) > _KEPT_ENDS:
+                del _ends[next(iter(_ends))]
+
+    def take_up(self, inputs: Inputs) -> None:
+        """After undo and redo: where this motion has ended before, asked the same, the paper is there at once.
+
+        An undo step is written when the hand lets go, in mid-motion; what the user saw is what came after.
+        """
+        if self.rest is not None or self.run not in _ends:
+            return
+        source, end = _ends[self.run]
+        if source == self.source and same(end.numbers, inputs.numbers(), self.net.frame.unit):
+            self.move_to(end.positions, end)
+
+
+#: Where motions ended, by name; the newest last.
+_ends: dict[str, tuple[state.Source, Rest]] = {}
+
+
+def stored_session(shape: state.StoredShape) -> Session:
+    """A session that goes on from what a mesh carries. In any thread. Raises CurvefoldError, StateError."""
+    net = net_of(shape.source)
+    if shape.positions.shape != (len(net.rest), 3):
+        raise state.StateError("the kept shape does not belong to the kept drawing")
+    session = Session(shape.source, net, shape.positions, shape.rest)
+    session.run = shape.run
+    return session
+
+
+def flat_session(source: state.Source) -> Session:
+    """A session of a new net, flat. Raises CurvefoldError."""
+    net = net_of(source)
+    return Session(source, net, flat_positions(net), None)
+
+
+def carried_session(source: state.Source, old: Snapshot) -> Session:
+    """A session of a new net with the shape of another. In any thread. Raises CurvefoldError."""
+    net = net_of(source)
+    if np.array_equal(net.rest, old.net.rest) and np.array_equal(net.quads, old.net.quads):
+        # Only names have changed, or sides, and those are among the numbers of the rest.
+        return Session(source, net, old.positions, old.rest)
+    return Session(source, net, carry_over(old.net, old.positions, net), None)
+
+
+def flat_positions(net: PiecewiseDog) -> Array:
+    """(V,3) the flat sheet, the paper's units."""
+    return np.column_stack([net.rest, np.zeros(len(net.rest))])

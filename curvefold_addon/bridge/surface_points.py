@@ -1,0 +1,131 @@
+"""Points of a paper as Blender shows it: what lies under the mouse, what is nearest, what is selected."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import bmesh  # type: ignore[import-not-found]
+from mathutils import Vector  # type: ignore[import-not-found]
+from mathutils.bvhtree import BVHTree  # type: ignore[import-not-found]
+from mathutils.geometry import (  # type: ignore[import-not-found]
+    barycentric_transform,
+    intersect_point_line,
+    intersect_point_tri,
+)
+
+from .mesh import CREASE, FLAT_UV, NO_CREASE, PATCH
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class SurfacePoint:
+    """at: on the flat sheet; place: in the paper's local coordinates."""
+
+    at: tuple[float, float]
+    place: tuple[float, float, float]
+
+
+def under_ray(mesh: Any, origin: Any, direction: Any) -> SurfacePoint | None:
+    """The first point of the paper along a ray in its local coordinates."""
+    place, _, face, _ = _tree(mesh).ray_cast(Vector(origin), Vector(direction))
+    return None if place is None else _on_face(mesh, face, place)
+
+
+def crease_under_ray(mesh: Any, origin: Any, direction: Any) -> int | None:
+    """The crease that is nearest to where a ray first meets the paper; None where it misses."""
+    place, *_ = _tree(mesh).ray_cast(Vector(origin), Vector(direction))
+    if place is None:
+        return None
+    best, best_gap = None, float("inf")
+    for item, edge in zip(mesh.attributes[CREASE].data, mesh.edges, strict=True):
+        if item.value == NO_CREASE:
+            continue
+        start, end = (mesh.vertices[k].co for k in edge.vertices)
+        on_line, part = intersect_point_line(place, start, end)
+        gap = (place - (start if part < 0 else end if part > 1 else on_line)).length
+        if gap < best_gap:
+            best, best_gap = int(item.value), gap
+    return best
+
+
+def nearest(mesh: Any, place: Any) -> SurfacePoint:
+    """The point of the paper that is nearest to a place in its local coordinates."""
+    found, _, face, _ = _tree(mesh).find_nearest(Vector(place))
+    return _on_face(mesh, face, found)
+
+
+def selected(mesh: Any) -> list[SurfacePoint]:
+    """The selected vertices of a mesh in Edit Mode."""
+    edited = bmesh.from_edit_mesh(mesh)
+    flat = edited.loops.layers.uv[FLAT_UV]
+    points = []
+    for vertex in edited.verts:
+        if vertex.select and vertex.link_loops:
+            x, y = vertex.link_loops[0][flat].uv
+            points.append(SurfacePoint((x, y), tuple(vertex.co)))
+    return points
+
+
+def selected_patches(mesh: Any) -> list[Point]:
+    """A point of the flat sheet in each patch of which a face is selected in Edit Mode."""
+    edited = bmesh.from_edit_mesh(mesh)
+    flat, patch = edited.loops.layers.uv[FLAT_UV], edited.faces.layers.int[PATCH]
+    largest: dict[int, Any] = {}
+    for face in edited.faces:
+        if face.select and (face[patch] not in largest or face.calc_area() > largest[face[patch]].calc_area()):
+            largest[face[patch]] = face
+    points = []
+    for _, face in sorted(largest.items()):
+        middle = sum((loop[flat].uv for loop in face.loops), Vector((0.0, 0.0))) / len(face.loops)
+        points.append((middle.x, middle.y))
+    return points
+
+
+def selected_borders(mesh: Any) -> list[tuple[Point, Point]]:
+    """Ends, on the flat sheet, of each stretch of the border whose vertices are selected in Edit Mode."""
+    edited = bmesh.from_edit_mesh(mesh)
+    flat = edited.loops.layers.uv[FLAT_UV]
+    edges = [e for e in edited.edges if e.is_boundary and all(v.select for v in e.verts)]
+    near: dict[Any, list[Any]] = {}
+    for edge in edges:
+        for vertex in edge.verts:
+            near.setdefault(vertex, []).append(edge.other_vert(vertex))
+    stretches = []
+    ends = sorted((v for v, others in near.items() if len(others) == 1), key=lambda v: v.index)
+    seen: set[Any] = set()
+    for end in ends:
+        if end in seen:
+            continue
+        before, here = None, end
+        while here is not None:
+            seen.add(here)
+            before, here = here, next((v for v in near[here] if v not in seen), None)
+        places = [vertex.link_loops[0][flat].uv for vertex in (end, before)]
+        stretches.append(((places[0].x, places[0].y), (places[1].x, places[1].y)))
+    return stretches
+
+
+def _tree(mesh: Any) -> Any:
+    """Of the paper itself, without modifiers, so that faces can be told."""
+    return BVHTree.FromPolygons(
+        [vertex.co for vertex in mesh.vertices], [tuple(polygon.vertices) for polygon in mesh.polygons]
+    )
+
+
+def _on_face(mesh: Any, face: int, place: Any) -> SurfacePoint:
+    flat = mesh.uv_layers[FLAT_UV].uv
+    mesh.calc_loop_triangles()
+    best, best_gap = None, float("inf")
+    for triangle in mesh.loop_triangles:
+        if triangle.polygon_index != face:
+            continue
+        corners = [mesh.vertices[v].co for v in triangle.vertices]
+        sheet = [Vector((*flat[loop].vector, 0.0)) for loop in triangle.loops]
+        inside = intersect_point_tri(place, *corners)
+        gap = 0.0 if inside is not None else min((place - corner).length for corner in corners)
+        if gap < best_gap:
+            best, best_gap = barycentric_transform(place, *corners, *sheet), gap
+    assert best is not None  # every face has triangles
+    return SurfacePoint((best.x, best.y), tuple(place))

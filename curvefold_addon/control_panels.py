@@ -1,0 +1,182 @@
+"""The sidebar's panels about creases, joints and patches of a paper, and about its weights."""
+
+from typing import ClassVar
+
+import bpy
+
+from . import live, wording
+from .control_properties import WEIGHTS
+from .panel_parts import PaperPanel, say, settings_column
+
+#: More sentences about what cannot be had than this are not shown.
+MOST_LACKS = 4
+
+
+class CreaseList(bpy.types.UIList):
+    """The creases of a paper"""
+
+    bl_idname = "CURVEFOLD_UL_creases"
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        data: bpy.types.PropertyGroup,
+        item: bpy.types.PropertyGroup,
+        icon: int,
+        active_data: bpy.types.PropertyGroup,
+        active_property: str,
+        index: int = 0,
+        flt_flag: int = 0,
+    ) -> None:
+        found = live.crease_report(data.id_data, index)
+        row = layout.split(factor=0.5)
+        side = "U" if found is None else found.found
+        row.label(text=item.name, icon=wording.SIDE_ICONS[side])
+        row = row.row(align=True)
+        row.label(text="" if found is None else wording.crease(found))
+        if item.side in ("V", "M"):
+            row.label(text="", icon="LOCKED")
+
+
+class CreasesPanel(PaperPanel, bpy.types.Panel):
+    """What became of each crease, and what it is told"""
+
+    bl_idname = "CURVEFOLD_PT_creases"
+    bl_label = "Creases"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        mesh = live.active_paper(context).data
+        settings = mesh.curvefold
+        report = live.report(mesh)
+        for lack in () if report is None else report.lacks[:MOST_LACKS]:
+            say(self.layout, context, lack, "ERROR", alert=True)
+        row = self.layout.row()
+        row.template_list(CreaseList.bl_idname, "", settings, "creases", settings, "active_crease", rows=4)
+        column = row.column(align=True)
+        column.operator("curvefold.pick_crease", text="", icon="EYEDROPPER")
+        column.operator("curvefold.flip_crease", text="", icon="ARROW_LEFTRIGHT")
+        column.separator()
+        column.operator("curvefold.lock_sides", text="", icon="LOCKED")
+        column.operator("curvefold.free_sides", text="", icon="UNLOCKED")
+        if settings.active_crease < len(settings.creases):
+            _draw_crease(self.layout, settings.creases[settings.active_crease])
+        self.layout.prop(settings, "use_assignments", text="Sides of the Drawing Hold")
+
+
+def _draw_crease(layout: bpy.types.UILayout, crease: bpy.types.PropertyGroup) -> None:
+    column = settings_column(layout)
+    column.row(align=True).prop(crease, "side", expand=True)
+    row = column.row(heading="Own Angle", align=True)
+    row.prop(crease, "use_angle", text="")
+    part = row.row(align=True)
+    part.active = crease.use_angle
+    part.prop(crease, "angle", text="")
+    part.prop(crease, "signed", toggle=True)
+    part = column.column()
+    part.active = not crease.use_angle
+    part.prop(crease, "amount", slider=True)
+
+
+class FlowPanel(PaperPanel, bpy.types.Panel):
+    """The shape in space that the active crease is given"""
+
+    bl_idname = "CURVEFOLD_PT_flow"
+    bl_label = "Shape in Space"
+    bl_parent_id = "CURVEFOLD_PT_creases"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = live.active_paper(context).data.curvefold
+        if settings.active_crease >= len(settings.creases):
+            return
+        crease = settings.creases[settings.active_crease]
+        column = settings_column(self.layout)
+        column.row(align=True).prop(crease, "flow", expand=True)
+        if crease.flow == "OBJECT":
+            column.prop(crease, "curve")
+        elif crease.flow == "SHAPE":
+            column.prop(crease, "curvature_times")
+            column.prop(crease, "curvature_plus")
+            column.prop(crease, "torsion_plus")
+        if crease.flow != "NONE":
+            column.prop(crease, "progress", slider=True)
+
+
+class JointList(bpy.types.UIList):
+    """The joints of a paper"""
+
+    bl_idname = "CURVEFOLD_UL_joints"
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        data: bpy.types.PropertyGroup,
+        item: bpy.types.PropertyGroup,
+        icon: int,
+        active_data: bpy.types.PropertyGroup,
+        active_property: str,
+        index: int = 0,
+        flt_flag: int = 0,
+    ) -> None:
+        row = layout.row(align=True)
+        row.prop(item, "enabled", text="")
+        row = row.row(align=True)
+        row.active = item.enabled
+        row.prop(item, "name", text="", emboss=False, icon=wording.JOINT_ICONS[item.family])
+
+
+class JointsPanel(PaperPanel, bpy.types.Panel):
+    """Points and borders that are drawn together, and patches that keep their shape"""
+
+    bl_idname = "CURVEFOLD_PT_joints"
+    bl_label = "Joints"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = live.active_paper(context).data.curvefold
+        column = self.layout.column(align=True)
+        column.operator("curvefold.join_points", icon=wording.JOINT_ICONS["POINTS"])
+        row = column.row(align=True)
+        row.operator("curvefold.glue_borders", text="Glue Borders", icon=wording.JOINT_ICONS["BORDERS"])
+        row.operator("curvefold.keep_patch", text="Keep Patch", icon=wording.JOINT_ICONS["PATCH"])
+        if not settings.joints:
+            return
+        row = self.layout.row()
+        row.template_list(JointList.bl_idname, "", settings, "joints", settings, "active_joint", rows=3)
+        row.operator("curvefold.remove_joint", text="", icon="REMOVE")
+        if settings.active_joint < len(settings.joints):
+            _draw_joint(settings_column(self.layout), settings.joints[settings.active_joint])
+
+
+def _draw_joint(column: bpy.types.UILayout, joint: bpy.types.PropertyGroup) -> None:
+    column.active = joint.enabled
+    if joint.family == "POINTS":
+        column.row(align=True).prop(joint, "relation", expand=True)
+        if joint.relation == "DISTANCE":
+            column.prop(joint, "distance")
+        elif joint.relation == "SHARE":
+            row = column.row(heading="Along", align=True)
+            for k, axis in enumerate("XYZ"):
+                row.prop(joint, "axes", index=k, text=axis, toggle=True)
+    elif joint.family == "BORDERS":
+        column.prop(joint, "bending")
+        column.prop(joint, "reverse")
+    else:
+        column.row(align=True).prop(joint, "shape", expand=True)
+    column.prop(joint, "strength")
+
+
+class WeightsPanel(PaperPanel, bpy.types.Panel):
+    """What counts how much when the paper cannot have everything"""
+
+    bl_idname = "CURVEFOLD_PT_weights"
+    bl_label = "Weights"
+    bl_parent_id = "CURVEFOLD_PT_advanced"
+    bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = live.active_paper(context).data.curvefold
+        column = settings_column(self.layout)
+        for name, _, _ in WEIGHTS:
+            column.prop(settings.weights, name)
+        column.operator("curvefold.usual_weights", icon="LOOP_BACK")

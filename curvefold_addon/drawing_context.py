@@ -1,0 +1,70 @@
+"""Which drawing a command is about, and who has to know when it has changed."""
+
+import bpy
+
+from .. import solver
+from . import live
+from .bridge import drawing_objects, state
+
+
+def active_sheet(context: bpy.types.Context) -> bpy.types.Object | None:
+    """The sheet that is meant: the active object, that of the active crease or paper, the one that is selected,
+    or the only one of the scene."""
+    active = context.active_object
+    if active is not None:
+        found = _sheet_behind(active)
+        if found is not None:
+            return found
+    for group in (context.selected_objects, context.scene.objects):
+        sheets = [item for item in group if drawing_objects.is_sheet(item)]
+        if sheets:
+            return sheets[0] if len(sheets) == 1 else None
+    return None
+
+
+def _sheet_behind(item: bpy.types.Object) -> bpy.types.Object | None:
+    if drawing_objects.is_sheet(item):
+        return item
+    if item.type == "MESH" and item.data.curvefold.is_paper:
+        return item.data.curvefold.sheet
+    return drawing_objects.sheet_of(item)
+
+
+def papers_of(sheet: bpy.types.Object) -> list[bpy.types.Mesh]:
+    """The papers that are folded along a sheet's drawing."""
+    return [mesh for mesh in bpy.data.meshes if mesh.curvefold.is_paper and mesh.curvefold.sheet == sheet]
+
+
+def drawing_changed(sheet: bpy.types.Object) -> list[str]:
+    """Lets the papers follow; without a window they are folded before this returns.
+
+    One sentence for each that cannot be folded.
+    """
+    problems = []
+    for mesh in papers_of(sheet):
+        live.rebuild(mesh)
+        if bpy.app.background and mesh.curvefold.live:
+            try:
+                live.settle(mesh)
+            except (solver.CurvefoldError, state.StateError) as error:
+                problems.append(f"{mesh.name}: {error}")
+    return problems
+
+
+def select_only(context: bpy.types.Context, item: bpy.types.Object) -> None:
+    """Makes an object the active and the only selected one."""
+    for other in context.selected_objects:
+        other.select_set(False)
+    item.select_set(True)
+    context.view_layer.objects.active = item
+
+
+def in_object_mode(operator: type, context: bpy.types.Context) -> bool:
+    """For polls: says so when it is not."""
+    if context.mode == "OBJECT":
+        return True
+    operator.poll_message_set("Works in Object Mode")
+    return False
+
+
+NO_SHEET = "Select a paper sheet, or something on it"

@@ -1,0 +1,83 @@
+"""Blender's own events, passed on. None of these ever raises: it would be said on every redraw."""
+
+import functools
+import traceback
+from collections.abc import Callable
+
+import bpy
+from bpy.app.handlers import persistent
+
+from . import live
+
+_said: set[str] = set()
+
+
+def _quiet(handler: Callable[..., None]) -> Callable[..., None]:
+    """The handler, whose errors are printed once each instead of raised."""
+
+    @persistent
+    @functools.wraps(handler)
+    def quiet(*arguments: object) -> None:
+        try:
+            handler(*arguments)
+        except Exception as error:
+            if repr(error) not in _said:
+                _said.add(repr(error))
+                traceback.print_exc()
+
+    return quiet
+
+
+@_quiet
+def depsgraph_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    live.notice([update.id for update in depsgraph.updates])
+
+
+@_quiet
+def frame_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    live.frame_changed(scene, depsgraph)
+
+
+@_quiet
+def playback_ended(*_: object) -> None:
+    live.wake_all()
+
+
+@_quiet
+def undone(*_: object) -> None:
+    live.park()
+
+
+@_quiet
+def file_closes(*_: object) -> None:
+    live.forget()
+
+
+@_quiet
+def file_opened(*_: object) -> None:
+    live.forget()
+    live.wake_all()
+
+
+_HANDLERS = (
+    ("depsgraph_update_post", depsgraph_changed),
+    ("frame_change_post", frame_changed),
+    ("animation_playback_post", playback_ended),
+    ("undo_post", undone),
+    ("redo_post", undone),
+    ("load_pre", file_closes),
+    ("load_post", file_opened),
+)
+
+
+def register() -> None:
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
+
+
+def unregister() -> None:
+    for name, handler in _HANDLERS:
+        handlers = getattr(bpy.app.handlers, name)
+        if handler in handlers:
+            handlers.remove(handler)
+    live.forget()

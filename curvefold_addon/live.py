@@ -1,0 +1,443 @@
+"""Papers that follow their handles: which of them have something to do, and doing it for a while.
+
+What a paper is lies in its datablocks (``properties``, ``bridge.state``); a session only works on it, and is
+made again whenever it is missing. Nothing here needs a window: ``tick`` is called by the operator that follows,
+``settle`` by whoever wants to wait.
+"""
+
+import time
+import traceback
+from collections.abc import Callable, Iterable
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+
+import bpy
+
+from .. import solver
+from .bridge import controls, drawing, hooks, papers, state
+from .bridge.drawing_objects import creases_of
+from .bridge.report import CreaseReport, Report, describe, describe_crease, describe_fault
+from .bridge.session import Session, carried_session, stored_session
+from .bridge.session import stop as stop_thread
+from .bridge.worker import pool
+
+__all__ = ["CreaseReport", "Report", "rebuild", "report", "session", "settle", "wake"]
+
+#: A drawing is folded anew when nobody has changed it for so long, seconds.
+DRAWING_RESTS = 0.25
+#: Iterations after which a fold that is waited for is left as it is.
+SETTLING = 1500
+
+
+@dataclass
+class _Watch:
+    """Who moves whom, by ``session_uid``. Objects are kept by name: references die on undo.
+
+    papers: mesh -> object that shows it; movers: object or mesh -> papers that follow it; drawings: part of a
+    drawing -> papers that are folded from it; objects: how many the scene has.
+    """
+
+    scene: str
+    objects: int
+    papers: dict[int, str] = field(default_factory=dict)
+    movers: dict[int, set[int]] = field(default_factory=dict)
+    drawings: dict[int, set[int]] = field(default_factory=dict)
+
+
+_sessions: dict[int, Session] = {}
+#: Sessions whose datablocks may have changed under them; they keep nets and models.
+_parked: dict[int, Session] = {}
+#: Sessions that are being made in the thread.
+_making: dict[int, Future[Session]] = {}
+#: Papers that may have something to do.
+_awake: set[int] = set()
+#: Papers whose drawing or resolution may have changed, and when.
+_stale: dict[int, float] = {}
+#: Why a paper cannot be folded as it is now.
+_faults: dict[int, str] = {}
+#: What went wrong with a paper that is not its user's fault; each is printed once.
+_broken: dict[int, str] = {}
+_watch: _Watch | None = None
+_start_ticking: Callable[[], None] | None = None
+
+
+# --- what operators, panels and properties call ------------------------------------------------------------------
+
+
+def wake(mesh: bpy.types.Mesh) -> None:
+    """A value has changed: the paper follows."""
+    if mesh.curvefold.is_paper:
+        _look_again()
+        _broken.pop(mesh.session_uid, None)
+        _rouse({mesh.session_uid})
+
+
+def rebuild(mesh: bpy.types.Mesh) -> None:
+    """The drawing or the resolution has changed: the net is made again and takes over the shape."""
+    if mesh.curvefold.is_paper:
+        _stale[mesh.session_uid] = time.monotonic()
+        wake(mesh)
+
+
+def rehook(mesh: bpy.types.Mesh, handle: bpy.types.PropertyGroup) -> None:
+    """A handle has another hook, or none: its point is held where it is."""
+    handle.pinned = handle.hook is None
+    paper = paper_of(mesh)
+    if paper is None:
+        return
+    try:
+        place = make_session(paper).place_of(tuple(handle.at))
+    except (solver.CurvefoldError, state.StateError):
+        return  # the report says that the handle is off the sheet, or the paper cannot be folded
+    if handle.hook is not None:
+        place = hooks.offset_in(handle.hook, paper, bpy.context.evaluated_depsgraph_get(), place)
+    handle.offset = place
+
+
+def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
+    """Folds until the paper rests. Blocking. Raises CurvefoldError or StateError when it cannot be folded."""
+    paper = paper_of(mesh)
+    if paper is None:
+        return
+    uid = mesh.session_uid
+    found = make_session(paper)
+    _stale.pop(uid, None)
+    source = _wanted_source(mesh)
+    if source != found.source:
+        found = carried_session(source, found.snapshot())
+        adopt(paper, found)
+    _faults.pop(uid, None)
+    found.advance(_inputs(paper, found), max_iterations)
+    found.write(mesh)
+    found.before = None
+    _awake.discard(uid)
+
+
+def report(mesh: bpy.types.Mesh) -> Report | None:
+    """Facts about the paper from its session; None when it has none. Never triggers work."""
+    uid = mesh.session_uid
+    fault = _faults.get(uid) or _broken.get(uid, "")
+    found = _sessions.get(uid) or _parked.get(uid)
+    if found is None:
+        return describe_fault(fault) if fault else None
+    folding = uid in _awake and mesh.curvefold.live
+    return describe(found, mesh.curvefold, fault, folding, bpy.context.scene.unit_settings)
+
+
+def crease_report(mesh: bpy.types.Mesh, index: int) -> CreaseReport | None:
+    """Facts about one crease; None when the paper has no session. Never triggers work."""
+    found = _sessions.get(mesh.session_uid) or _parked.get(mesh.session_uid)
+    return None if found is None else describe_crease(found, index)
+
+
+def session(mesh: bpy.types.Mesh) -> Session | None:
+    """The paper's session; None when it has none."""
+    return _sessions.get(mesh.session_uid)
+
+
+def make_session(paper: bpy.types.Object) -> Session:
+    """The paper's session, made now when it is missing. Raises CurvefoldError, StateError."""
+    mesh = paper.data
+    uid = mesh.session_uid
+    _making.pop(uid, None)
+    if uid not in _sessions:
+        shape = state.load(mesh)
+        _take(paper, _unparked(uid, shape) or stored_session(shape))
+    return _sessions[uid]
+
+
+def adopt(paper: bpy.types.Object, made: Session) -> None:
+    """A paper has a new session, and its mesh shows it; a flat one that is asked to be flat rests."""
+    papers.show(paper.data, made)
+    _sessions[paper.data.session_uid] = made
+    controls.match_creases(paper.data.curvefold, made.drawn)
+    _look_again()
+    made.rest_if_flat(_inputs(paper, made))
+    made.write(paper.data)
+
+
+def flatten(paper: bpy.types.Object) -> None:
+    """Lays a paper flat at once; it rests when it is asked to be flat. Raises CurvefoldError, StateError."""
+    found = make_session(paper)
+    found.lay_flat()
+    found.rest_if_flat(_inputs(paper, found))
+    found.write(paper.data)
+    found.before = None
+    wake(paper.data)
+
+
+def show_again(paper: bpy.types.Object) -> None:
+    """The mesh shows what is kept of the paper, whatever it has shown in between."""
+    found = make_session(paper)
+    papers.show_positions(paper.data, found)
+
+
+def paper_of(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
+    """The object of the scene that shows a paper: where hooks are, is seen from it."""
+    return _paper(mesh.session_uid)
+
+
+def active_paper(context: bpy.types.Context) -> bpy.types.Object | None:
+    """The paper that the user means: the active object, or the one that it pulls."""
+    active = context.active_object
+    if active is None:
+        return None
+    if active.type == "MESH" and active.data.curvefold.is_paper:
+        return active
+    watch = _watched()
+    return next((_paper(uid) for uid in sorted(watch.movers.get(active.session_uid, ()))), None)
+
+
+def is_playing() -> bool:
+    """Whether an animation is played in some window."""
+    return any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows)
+
+
+def is_at_work() -> bool:
+    """Whether some paper may have something to do."""
+    return bool(_awake)
+
+
+# --- what handlers and the following operator call ---------------------------------------------------------------
+
+
+def notice(changed: Iterable[bpy.types.ID]) -> None:
+    """Datablocks have changed: wakes the papers that follow them."""
+    watch = _watched()
+    roused = set()
+    if watch.objects != len(bpy.context.scene.objects):
+        # Something was added or removed: a hook, perhaps.
+        _look_again()
+        watch = _watched()
+        roused.update(watch.papers)
+    for datablock in changed:
+        uid = datablock.original.session_uid
+        roused.update(watch.movers.get(uid, ()))
+        for paper in watch.drawings.get(uid, ()):
+            _stale[paper] = time.monotonic()
+            roused.add(paper)
+    _rouse(roused)
+
+
+def tick(budget: float, transforming: bool = False) -> bool:
+    """Follows for ``budget`` seconds; whether there is more to do. Never raises.
+
+    transforming: whether the user holds something in the hand.
+    """
+    deadline = time.perf_counter() + budget
+    waiting = sorted(_awake)
+    for done, uid in enumerate(waiting):
+        share = max(0.0, deadline - time.perf_counter()) / (len(waiting) - done)
+        try:
+            if not _follow(uid, time.perf_counter() + share, transforming):
+                _awake.discard(uid)
+        except (solver.CurvefoldError, state.StateError) as error:
+            _awake.discard(uid)
+            _faults[uid] = str(error)
+        except Exception as error:
+            _awake.discard(uid)
+            if _broken.get(uid) != repr(error):
+                _broken[uid] = repr(error)
+                traceback.print_exc()
+    return bool(_awake)
+
+
+def frame_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """A frame of an animation: papers with animated hooks take their iterations, whatever the clock says."""
+    for uid in list(_watched().papers):
+        paper = _paper(uid)
+        if paper is None or not _may_move(paper) or not hooks.is_animated(paper):
+            continue
+        settings = paper.data.curvefold
+        found = make_session(paper)
+        before, found.frame = found.frame, scene.frame_current
+        inputs = hooks.read(paper, scene, depsgraph, found.net.frame.unit, found.why_not_at, found.drawn)
+        step = 0 if before is None else scene.frame_current - before
+        if scene.frame_current == scene.frame_start:
+            found.start_anew(inputs, SETTLING)
+        elif 0 < step <= max(1, scene.frame_step):
+            found.advance(inputs, step * settings.iterations_per_frame)
+        elif bpy.app.background:
+            found.advance(inputs, SETTLING)
+        else:
+            _rouse({uid})
+            continue
+        found.write(paper.data)
+        found.before = None
+
+
+def park() -> None:
+    """Undo and redo have changed datablocks under the sessions: they look again before they go on."""
+    _parked.update(_sessions)
+    _sessions.clear()
+    _making.clear()
+    _stale.clear()
+    _faults.clear()
+    _broken.clear()
+    _look_again()
+    _awake.clear()
+    _rouse(set(_watched().papers))
+
+
+def forget() -> None:
+    """Another file: nothing of the old one is left."""
+    _sessions.clear()
+    _parked.clear()
+    _making.clear()
+    _stale.clear()
+    _faults.clear()
+    _broken.clear()
+    _awake.clear()
+    _look_again()
+    stop_thread()
+
+
+def wake_all() -> None:
+    """Every live paper looks whether it has something to do."""
+    _rouse(set(_watched().papers))
+
+
+def on_start(start: Callable[[], None] | None) -> None:
+    """Who sees to it that ticks come when a paper has something to do."""
+    global _start_ticking
+    _start_ticking = start
+
+
+# --- inside ------------------------------------------------------------------------------------------------------
+
+
+def _rouse(papers: set[int]) -> None:
+    _awake.update(papers)
+    # Without a window nothing ticks.
+    if _awake and _start_ticking is not None and not bpy.app.background:
+        _start_ticking()
+
+
+def _look_again() -> None:
+    global _watch
+    _watch = None
+
+
+def _watched() -> _Watch:
+    global _watch
+    scene = bpy.context.scene
+    if _watch is None or _watch.scene != scene.name:
+        _watch = _look(scene)
+    return _watch
+
+
+def _look(scene: bpy.types.Scene) -> _Watch:
+    watch = _Watch(scene.name, len(scene.objects))
+    known = {mesh.session_uid for mesh in bpy.data.meshes if mesh.curvefold.is_paper}
+    if not known:
+        return watch
+    for thing in scene.objects:
+        if thing.type == "MESH" and thing.data.session_uid in known:
+            watch.papers.setdefault(thing.data.session_uid, thing.name)
+    for uid, name in watch.papers.items():
+        paper = scene.objects[name]
+        settings = paper.data.curvefold
+        movers = hooks.movers(settings)
+        shapes = [mover.data for mover in movers if mover.type == "CURVE"]
+        for mover in (paper, paper.data, *movers, *shapes):
+            watch.movers.setdefault(mover.session_uid, set()).add(uid)
+        if settings.sheet is not None:
+            for part in (settings.sheet, *creases_of(settings.sheet)):
+                watch.drawings.setdefault(part.session_uid, set()).add(uid)
+    return watch
+
+
+def _paper(uid: int) -> bpy.types.Object | None:
+    for _ in range(2):
+        name = _watched().papers.get(uid)
+        paper = None if name is None else bpy.context.scene.objects.get(name)
+        if paper is not None and paper.type == "MESH" and paper.data.session_uid == uid:
+            return paper
+        _look_again()  # renamed, removed, or made since
+    return None
+
+
+def _may_move(paper: bpy.types.Object) -> bool:
+    return paper.data.curvefold.live and paper.data.library is None
+
+
+def _inputs(paper: bpy.types.Object, found: Session) -> hooks.Inputs:
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    scene = bpy.context.scene
+    return hooks.read(paper, scene, depsgraph, found.net.frame.unit, found.why_not_at, found.drawn)
+
+
+def _wanted_source(mesh: bpy.types.Mesh) -> state.Source:
+    """What the paper should be folded from now. Raises PatternError, StateError."""
+    settings = mesh.curvefold
+    stored = state.load_source(mesh)
+    sheet = settings.sheet
+    # A paper whose drawing is gone keeps it.
+    if sheet is None or sheet.name not in bpy.context.scene.objects:
+        return state.Source(stored.pattern, settings.resolution, stored.scale)
+    return state.source_of(drawing.read_drawing(sheet), settings.resolution)
+
+
+def _unparked(uid: int, shape: state.StoredShape) -> Session | None:
+    parked = _parked.pop(uid, None)
+    if parked is None or parked.source != shape.source:
+        return None
+    parked.reload(shape)
+    return parked
+
+
+def _take(paper: bpy.types.Object, made: Session) -> None:
+    """A session that goes on from what the mesh carries."""
+    _sessions[paper.data.session_uid] = made
+    controls.match_creases(paper.data.curvefold, made.drawn)
+    made.take_up(_inputs(paper, made))
+
+
+def _follow(uid: int, deadline: float, transforming: bool) -> bool:
+    """Works on one paper until the clock says ``deadline``; whether it has more to do."""
+    paper = _paper(uid)
+    # Leaving another mode is a change, and wakes it again.
+    if paper is None or not _may_move(paper) or paper.mode != "OBJECT":
+        return False
+    mesh = paper.data
+    if is_playing() and hooks.is_animated(paper):
+        return False  # frames count, not the clock; the end of the playback wakes it
+    if uid not in _making and uid not in _sessions:
+        shape = state.load(mesh)
+        parked = _unparked(uid, shape)
+        if parked is None:
+            _making[uid] = pool().submit(stored_session, shape)
+        else:
+            _take(paper, parked)
+    if uid in _making:
+        try:
+            made = _making[uid].result(timeout=max(0.0, deadline - time.perf_counter()))
+        except TimeoutError:
+            return True
+        finally:
+            if _making[uid].done():
+                del _making[uid]
+        _faults.pop(uid, None)
+        if uid in _sessions:
+            adopt(paper, made)
+        else:
+            _take(paper, made)
+    found = _sessions[uid]
+    if uid in _stale and not transforming and time.monotonic() - _stale[uid] >= DRAWING_RESTS:
+        del _stale[uid]
+        source = _wanted_source(mesh)
+        if source != found.source:
+            _making[uid] = pool().submit(carried_session, source, found.snapshot())
+            return True
+        _faults.pop(uid, None)
+    inputs = _inputs(paper, found)
+    if not transforming and found.is_back_at_start(inputs):
+        found.return_to_start()
+    else:
+        found.follow(inputs, deadline)
+    found.write(mesh)
+    rests = found.rests_with(inputs)
+    if rests and not transforming:
+        found.before = None
+    # A hand that holds still may yet be taken back.
+    return not rests or uid in _stale or (transforming and found.before is not None)

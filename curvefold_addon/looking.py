@@ -1,0 +1,35 @@
+"""The 3D view turns to what was added where it would hardly be seen: a letter among things of metres."""
+
+import bpy
+from mathutils import Vector
+
+#: A thing fills this much of the view's shorter side when it is turned to ...
+FILLS = 0.6
+#: ... and below this, or above the whole side, it is.
+SMALL = 0.3
+#: Width of the view's camera, mm, with the zoom that Blender gives it.
+SENSOR = 72.0
+
+
+def show(context: bpy.types.Context, thing: bpy.types.Object) -> None:
+    """Moves the view from which a command was given, if there is one; never turns it."""
+    space = context.space_data
+    if bpy.app.background or space is None or space.type != "VIEW_3D" or space.region_3d is None:
+        return
+    view = space.region_3d
+    if view.view_perspective == "CAMERA":
+        return
+    context.view_layer.update()
+    corners = [thing.matrix_world @ Vector(corner) for corner in thing.bound_box]
+    middle = sum(corners, Vector()) / len(corners)
+    size = 2.0 * max((corner - middle).length for corner in corners)
+    if size == 0.0:
+        return
+    area = context.area
+    side = SENSOR / space.lens * min(area.width, area.height) / max(area.width, area.height)
+    seen = size / (side * view.view_distance)
+    away = (middle - view.view_location).length / (side * view.view_distance)
+    if SMALL <= seen <= 1.0 and away <= 0.5:
+        return
+    view.view_location = middle
+    view.view_distance = size / (side * FILLS)

@@ -1,0 +1,63 @@
+"""An animation as shape keys, so that a render farm needs no solver; and back."""
+
+from typing import ClassVar
+
+import bpy
+
+from .. import live
+from ..bridge import baking
+from .on_paper import OnPaper
+
+
+class Bake(OnPaper, bpy.types.Operator):
+    """Keep the paper's shape at every frame of the scene as shape keys; then no solver is needed to play it"""
+
+    bl_idname = "curvefold.bake"
+    bl_label = "Bake to Shape Keys"
+    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+
+    def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
+        scene, mesh = context.scene, paper.data
+        if paper.mode != "OBJECT":
+            return self.refuse("Leave Edit Mode before baking")
+        if mesh.shape_keys is not None:
+            return self.refuse("The paper has shape keys already; free its bake first")
+        if not mesh.curvefold.live:
+            return self.refuse("The paper is not live, so there is nothing to bake")
+        present = scene.frame_current
+        shapes = []
+        for frame in range(scene.frame_start, scene.frame_end + 1):
+            # Every frame in its turn: the shape depends on the way.
+            scene.frame_set(frame)
+            shapes.append(baking.shown_positions(mesh))
+        mesh.curvefold.live = False
+        baking.store_keys(paper, shapes, scene.frame_start)
+        scene.frame_set(present)
+        return {"FINISHED"}
+
+
+class FreeBake(OnPaper, bpy.types.Operator):
+    """Remove the baked shape keys; the paper follows its handles again"""
+
+    bl_idname = "curvefold.free_bake"
+    bl_label = "Free Bake"
+    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+
+    def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
+        mesh = paper.data
+        if not baking.is_baked(mesh):
+            return self.refuse("The paper is not baked")
+        baking.remove_keys(paper)
+        live.show_again(paper)
+        mesh.curvefold.live = True
+        return {"FINISHED"}
+
+
+def register() -> None:
+    bpy.utils.register_class(Bake)
+    bpy.utils.register_class(FreeBake)
+
+
+def unregister() -> None:
+    bpy.utils.unregister_class(FreeBake)
+    bpy.utils.unregister_class(Bake)

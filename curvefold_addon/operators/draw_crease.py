@@ -1,0 +1,59 @@
+"""A new crease, drawn by hand on the sheet."""
+
+from typing import ClassVar
+
+import bpy
+from bpy.props import EnumProperty
+
+from ..bridge import drawing, drawing_objects
+from ..drawing_context import NO_SHEET, active_sheet, select_only
+from ..properties import ASSIGNMENTS
+
+DRAW_TOOL = "builtin.draw"
+
+
+class DrawCrease(bpy.types.Operator):
+    """Draw a new crease on the sheet; leave Edit Mode when it is done"""
+
+    bl_idname = "curvefold.draw_crease"
+    bl_label = "Draw Crease"
+    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+
+    assignment: EnumProperty(name="Assignment", items=ASSIGNMENTS, default="U")
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if context.mode not in {"OBJECT", "EDIT_CURVE"}:
+            cls.poll_message_set("Works in Object Mode, or while a curve is edited")
+            return False
+        if active_sheet(context) is None:
+            cls.poll_message_set(NO_SHEET)
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        sheet = active_sheet(context)
+        if context.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        # Drawing on a planar curve stays in its plane, from wherever it is seen; and its plane is the sheet's.
+        curve = drawing_objects.new_curve("Crease")
+        line = drawing_objects.LINE * drawing.sheet_size(sheet)
+        crease = drawing_objects.new_crease(curve, sheet, self.assignment, line)
+        if not crease.visible_get():
+            bpy.data.objects.remove(crease)
+            drawing_objects.remove_curve(curve)
+            self.report({"ERROR"}, f"{sheet.name} is hidden: show it to draw on it")
+            return {"CANCELLED"}
+        select_only(context, crease)
+        if not bpy.app.background:
+            bpy.ops.object.mode_set(mode="EDIT")
+            bpy.ops.wm.tool_set_by_id(name=DRAW_TOOL, space_type="VIEW_3D")
+        return {"FINISHED"}
+
+
+def register() -> None:
+    bpy.utils.register_class(DrawCrease)
+
+
+def unregister() -> None:
+    bpy.utils.unregister_class(DrawCrease)

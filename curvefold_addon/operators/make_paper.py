@@ -1,0 +1,75 @@
+"""From a drawing to a paper that folds: the active sheet becomes a mesh in the same place."""
+
+from typing import ClassVar
+
+import bpy
+from bpy.props import FloatProperty, IntProperty
+
+from ... import solver
+from .. import handle_making, live, paper_material
+from ..bridge import drawing, papers, state
+from ..bridge.session import flat_session
+from ..drawing_context import NO_SHEET, active_sheet, select_only
+
+
+class MakePaper(bpy.types.Operator):
+    """Make a paper of the active drawing, ready to be folded; the drawing stays and can be edited"""
+
+    bl_idname = "curvefold.make_paper"
+    bl_label = "Make Paper"
+    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+
+    resolution: IntProperty(
+        name="Resolution",
+        description="Quads along the longer side of the sheet",
+        default=32,
+        min=4,
+        soft_max=80,
+        max=1000,
+    )
+    fold: FloatProperty(
+        name="Fold",
+        description="How far all creases are folded, each on the side it chooses",
+        subtype="PERCENTAGE",
+        default=0.0,
+        min=0.0,
+        max=100.0,
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if active_sheet(context) is None:
+            cls.poll_message_set(NO_SHEET)
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        sheet = active_sheet(context)
+        if context.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        try:
+            made = flat_session(state.source_of(drawing.read_drawing(sheet), self.resolution))
+            paper = papers.new_paper("Paper", context.collection, paper_material.paper_material())
+            paper.matrix_world = sheet.matrix_world
+            settings = paper.data.curvefold
+            settings.sheet = sheet
+            settings.resolution = self.resolution
+            settings.fold = self.fold
+            settings.is_paper = True
+            live.adopt(paper, made)
+            select_only(context, paper)
+            handle_making.go_on(paper)
+        except solver.CurvefoldError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        for note in made.net.notes:
+            self.report({"INFO"}, note)
+        return {"FINISHED"}
+
+
+def register() -> None:
+    bpy.utils.register_class(MakePaper)
+
+
+def unregister() -> None:
+    bpy.utils.unregister_class(MakePaper)

@@ -1,0 +1,118 @@
+"""Handles by clicking on the paper."""
+
+from typing import ClassVar
+
+import bpy
+from bpy_extras import view3d_utils
+
+from ... import solver
+from .. import handle_making, live
+from ..bridge import surface_points
+from ..bridge.state import StateError
+from ..drawing_context import select_only
+from .on_paper import OnPaper
+
+HELP = "Click on the paper to place a handle, then drag it with G   |   Enter, Esc or right click: done"
+
+
+class PlaceHandle(OnPaper, bpy.types.Operator):
+    """Click on the paper to place handles; each gets an empty to drag it by"""
+
+    bl_idname = "curvefold.place_handle"
+    bl_label = "Place Handles"
+    # Every click is an undo step of its own.
+    bl_options: ClassVar[set[str]] = {"REGISTER"}
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if context.area is None or context.area.type != "VIEW_3D":
+            self.report({"ERROR"}, "Handles are placed in a 3D view")
+            return {"CANCELLED"}
+        if context.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        self._paper = live.active_paper(context).name
+        context.window.cursor_modal_set("CROSSHAIR")
+        context.workspace.status_text_set(HELP)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return self.refuse("Handles are placed with the mouse; use Add Handles in Edit Mode instead")
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        paper = context.scene.objects.get(self._paper)
+        done = event.type in {"ESC", "RIGHTMOUSE", "RET", "NUMPAD_ENTER"} and event.value == "PRESS"
+        if done or paper is None:
+            self.cancel(context)
+            return {"FINISHED"}
+        if event.type == "LEFTMOUSE" and event.value == "PRESS":
+            region, view = view_under(context, event)
+            if region is not None:
+                mouse = (event.mouse_x - region.x, event.mouse_y - region.y)
+                return self._click(context, paper, region, view, mouse)
+        return {"PASS_THROUGH"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        context.window.cursor_modal_restore()
+        context.workspace.status_text_set(None)
+
+    def _click(
+        self,
+        context: bpy.types.Context,
+        paper: bpy.types.Object,
+        region: bpy.types.Region,
+        view: bpy.types.RegionView3D,
+        mouse: tuple[int, int],
+    ) -> set[str]:
+        origin = view3d_utils.region_2d_to_origin_3d(region, view, mouse)
+        direction = view3d_utils.region_2d_to_vector_3d(region, view, mouse)
+        try:
+            if place_along(context, paper, origin, direction) is None:
+                self.report({"INFO"}, "There is no paper under the mouse")
+        except (solver.CurvefoldError, StateError) as error:
+            self.report({"ERROR"}, str(error))
+        else:
+            bpy.ops.ed.undo_push(message="Place Handle")
+        return {"RUNNING_MODAL"}
+
+
+def place_along(context: bpy.types.Context, paper: bpy.types.Object, origin, direction) -> bpy.types.Object | None:
+    """A handle where a ray of the world first meets the paper, and its empty; None when it misses."""
+    to_local = paper.matrix_world.inverted_safe()
+    point = surface_points.under_ray(paper.data, to_local @ origin, to_local.to_3x3() @ direction)
+    if point is None:
+        return None
+    handle = handle_making.add_handle(paper, point)
+    empty = handle_making.new_empty(paper, handle.offset.copy(), handle.name)
+    handle_making.hook_to(handle, paper, empty)
+    select_only(context, empty)
+    handle_making.go_on(paper)
+    return empty
+
+
+def view_under(
+    context: bpy.types.Context, event: bpy.types.Event
+) -> tuple[bpy.types.Region | None, bpy.types.RegionView3D | None]:
+    """The 3D view in which the mouse is, without its toolbars and menus."""
+    for area in context.window.screen.areas:
+        if area.type != "VIEW_3D":
+            continue
+        inside = [region for region in area.regions if _holds(region, event)]
+        if any(region.type != "WINDOW" for region in inside):
+            return None, None
+        for region in inside:
+            return region, region.data
+    return None, None
+
+
+def _holds(region: bpy.types.Region, event: bpy.types.Event) -> bool:
+    return (
+        region.x <= event.mouse_x < region.x + region.width and region.y <= event.mouse_y < region.y + region.height
+    )
+
+
+def register() -> None:
+    bpy.utils.register_class(PlaceHandle)
+
+
+def unregister() -> None:
+    bpy.utils.unregister_class(PlaceHandle)

@@ -1,0 +1,139 @@
+"""What is drawn over each paper now. Computed for what is switched on, kept while the shape stays the same."""
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import bpy
+
+from .. import live
+from ..bridge import baking
+from ..bridge import overlay as arrays
+
+#: A shape is at rest, and worth finding rulings for, when it is the same after this many seconds.
+REST = 0.12
+#: A moving one gets new rulings after this many; between, the old ones go with it.
+MOVING = 1.0
+
+
+@dataclass
+class _Kept:
+    """Of one mesh. rulings: the last ones found, and in which shape.
+
+    looked_at: the shape at the last look; asked: when rulings were asked for.
+    """
+
+    shape: arrays.PaperShape
+    triangles: arrays.Indices
+    rulings: arrays.Rulings | None = None
+    rulings_of: arrays.PaperShape | None = None
+    looked_at: arrays.PaperShape | None = None
+    asked: float = 0.0
+
+
+@dataclass(frozen=True)
+class PaperContent:
+    """What is drawn over one paper, in the coordinates of ``paper``; None: switched off, or not there yet."""
+
+    paper: bpy.types.Object
+    creases: arrays.Lines | None
+    stretch: arrays.Surface | None
+    rulings: arrays.Lines | None
+    pulls: arrays.Pulls | None
+    angles: tuple[arrays.Label, ...]
+
+
+_kept: dict[int, _Kept] = {}
+_finder: arrays.RulingFinder | None = None
+
+
+def papers(context: bpy.types.Context) -> Iterator[bpy.types.Object]:
+    """The papers that the context's viewport shows."""
+    if not any(mesh.curvefold.is_paper for mesh in bpy.data.meshes):
+        return
+    for item in context.view_layer.objects:
+        is_paper = item.type == "MESH" and item.data.curvefold.is_paper and item.mode != "EDIT"
+        if is_paper and item.visible_in_viewport_get(context.space_data):
+            yield item
+
+
+def of_paper(paper: bpy.types.Object, settings: bpy.types.PropertyGroup) -> PaperContent | None:
+    """What ``settings`` ask to be drawn over a paper. None while it has no shape of its own."""
+    mesh = paper.data
+    session = live.session(mesh)
+    if session is None or baking.is_baked(mesh):
+        return None
+    kept = _kept.get(mesh.session_uid)
+    if kept is None or not kept.shape.is_of(session.net, session.positions):
+        shape = arrays.PaperShape(session.net, session.positions)
+        if len(mesh.vertices) != len(shape.shown):
+            return None
+        if kept is not None and kept.shape.net is session.net:
+            kept.shape = shape
+        else:
+            _forget_the_dead()
+            kept = _kept[mesh.session_uid] = _Kept(shape, arrays.shown_triangles(mesh))
+    shape = kept.shape
+    inputs = session.inputs
+    return PaperContent(
+        paper,
+        shape.creases() if settings.creases else None,
+        shape.stretch(kept.triangles) if settings.stretch else None,
+        _rulings(kept) if settings.rulings else None,
+        shape.pulls(inputs.handles) if settings.pulls and inputs is not None else None,
+        shape.angles() if settings.angles else (),
+    )
+
+
+def forget() -> None:
+    """Drops everything that is kept."""
+    global _finder
+    _kept.clear()
+    if bpy.app.timers.is_registered(_look_for_rulings):
+        bpy.app.timers.unregister(_look_for_rulings)
+    if _finder is not None:
+        _finder.stop()
+        _finder = None
+
+
+def is_kept(uid: int) -> bool:
+    """Whether something is kept for the mesh with this ``session_uid``."""
+    return uid in _kept
+
+
+def _forget_the_dead() -> None:
+    alive = {mesh.session_uid for mesh in bpy.data.meshes}
+    for uid in [uid for uid in _kept if uid not in alive]:
+        del _kept[uid]
+
+
+def _rulings(kept: _Kept) -> arrays.Lines | None:
+    if kept.rulings_of is not kept.shape and not bpy.app.timers.is_registered(_look_for_rulings):
+        bpy.app.timers.register(_look_for_rulings, first_interval=REST)
+    return None if kept.rulings is None else kept.shape.rulings(kept.rulings)
+
+
+def _look_for_rulings() -> float | None:
+    """One look: takes what was found, asks for what has come to rest; seconds to the next, None for never."""
+    global _finder
+    if _finder is None:
+        _finder = arrays.RulingFinder()
+    found = _finder.take()
+    for kept in _kept.values():
+        if found is not None and kept.shape.net is found[0].net:
+            kept.rulings_of, kept.rulings = found
+            redraw()
+        due = kept.looked_at is kept.shape or time.monotonic() - kept.asked > MOVING
+        if kept.rulings_of is not kept.shape and due and _finder.ask(kept.shape):
+            kept.asked = time.monotonic()
+        kept.looked_at = kept.shape
+    waiting = _finder.busy or any(kept.rulings_of is not kept.shape for kept in _kept.values())
+    return REST if waiting else None
+
+
+def redraw() -> None:
+    """Has all 3D views drawn again."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()

@@ -1,0 +1,58 @@
+"""What the panels say, as text: facts in, plain sentences out."""
+
+import re
+import textwrap
+
+from .bridge.report import CreaseReport, Report
+
+#: The solver numbers creases; in Blender they have names of their own.
+_NUMBERED = re.compile(r"crease \d+ \((.+)\)")
+#: Width of a letter and of an icon with its margins in the interface, pixels at a resolution scale of 1.
+_LETTER, _MARGIN = 6.6, 46.0
+
+SIDES = {"V": "Valley", "M": "Mountain", "U": "Not folded"}
+SIDE_ICONS = {"V": "COLORSET_04_VEC", "M": "COLORSET_01_VEC", "U": "REMOVE"}
+JOINT_ICONS = {"POINTS": "LINKED", "BORDERS": "MESH_CYLINDER", "PATCH": "FACESEL"}
+STATE_ICONS = {"settled": "CHECKMARK", "folding": "SORTTIME", "trouble": "ERROR"}
+
+NO_SHEET = "Start with a sheet of paper, a sample, or a drawing"
+NO_CREASE = "Draw a crease: a curve along which the paper folds"
+NEXT = "Slide Fold, or place handles and drag them"
+ASLEEP = "It looks up when something moves"
+NOT_LIVE = "Not live: it stays as it is"
+BAKED = "Baked: it plays its shape keys"
+
+
+def stretch(report: Report) -> str:
+    """How much the paper is stretched; paper itself allows about half a percent."""
+    return f"Stretch {report.stretch_mean:.2%} mean, {report.stretch_max:.1%} at most"
+
+
+def crease_name(report: CreaseReport) -> str:
+    """What the user calls a crease."""
+    numbered = _NUMBERED.fullmatch(report.label)
+    return report.label if numbered is None else numbered[1]
+
+
+def crease(report: CreaseReport) -> str:
+    """What became of a crease."""
+    if report.found not in ("M", "V"):
+        return SIDES["U"]
+    angle = "" if report.fold_angle is None else f" {report.fold_angle:.0f}°"
+    gaps = "" if report.folded else ", with gaps"
+    return f"{SIDES[report.found]}{angle}{gaps}"
+
+
+def effort(report: Report) -> str:
+    """What the solver has to do."""
+    return f"{report.vertices} vertices, {report.milliseconds:.0f} ms an iteration"
+
+
+def count(number: int, thing: str) -> str:
+    """``3 creases``."""
+    return f"{number or 'No'} {thing}{'' if number == 1 else 's'}"
+
+
+def lines(sentence: str, width: float) -> list[str]:
+    """A sentence in lines that fit into so many pixels (at a resolution scale of 1)."""
+    return textwrap.wrap(sentence, max(16, int((width - _MARGIN) / _LETTER)))

@@ -1,0 +1,93 @@
+"""A batch in trouble: names that would lead out of its folder, odd lists, killed in the middle, a folder it may
+not write to. Nothing half-written stands under its final name, and the next run does the rest."""
+
+import contextlib
+import itertools
+import json
+import os
+import shutil
+import signal
+import stat
+import string
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+ROOT = Path(__file__).resolve().parents[2]
+QUICK = ["--resolution", "10", "--angle", "20"]
+
+ODD = st.text(string.ascii_letters + "./\\ -é\t#", max_size=14)
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(names=st.lists(st.sampled_from(["..", ".", "...", "a/..", "../..", "a", ""]) | ODD, max_size=5))
+def test_no_drawing_leads_out_of_the_folder(extension, names):
+    batch = extension("curvefold_addon.batch")
+    out = Path("/somewhere/out")
+    tasks = list(batch._tasks([Path("/drawings") / f"{name}.svg" for name in names], out, False, []))
+    folders = [Path(os.path.normpath(task.folder)) for task in tasks]
+    assert all(folder.parent == out for folder in folders)
+    assert len({str(folder).lower() for folder in folders}) == len(names)
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(data=st.binary(max_size=80))
+def test_any_list_is_read_or_refused(extension, data, tmp_path_factory):
+    batch = extension("curvefold_addon.batch")
+    path = tmp_path_factory.mktemp("lists") / "list.txt"
+    path.write_bytes(data)
+    with contextlib.suppress(batch.BatchError):
+        assert batch.find_drawings(path)
+
+
+def command(folder, out):
+    return [sys.executable, "-m", "curvefold_addon", "batch", str(folder), "--out", str(out), "--jobs", "1", *QUICK]
+
+
+def whole(out):
+    """Every file under a final name is complete."""
+    for path in out.rglob("*.json"):
+        json.loads(path.read_text(encoding="utf-8"))
+    for path in out.rglob("folded.obj"):
+        assert path.read_text(encoding="utf-8").rstrip().splitlines()[-1].startswith("f ")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
+def test_killed_in_the_middle_it_goes_on_where_it_was(drawing, tmp_path):
+    folder, out = tmp_path / "drawings", tmp_path / "out"
+    folder.mkdir()
+    for name in "abc":
+        shutil.copy(drawing, folder / f"{name}.svg")
+    first = subprocess.Popen(command(folder, out), cwd=ROOT, start_new_session=True,
+                             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
+    for _ in itertools.repeat(None, 1200):
+        if list(out.glob("*/batch.json")) or first.poll() is not None:
+            break
+        time.sleep(0.1)
+    os.killpg(first.pid, signal.SIGKILL)
+    first.wait()
+    whole(out)
+    done = {path.parent.name: path.stat().st_mtime_ns for path in out.glob("*/batch.json")}
+    assert done
+    again = subprocess.run(command(folder, out), cwd=ROOT, capture_output=True, text=True, timeout=300)
+    assert again.returncode == 0, again.stdout + again.stderr
+    after = {path.parent.name: path.stat().st_mtime_ns for path in out.glob("*/batch.json")}
+    assert set(after) == set("abc")
+    assert {name: after[name] for name in done} == done
+    whole(out)
+
+
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="root may write everywhere")
+def test_a_folder_it_may_not_write_to_is_named(drawing, tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    out.chmod(stat.S_IRUSR | stat.S_IXUSR)
+    done = subprocess.run(command(drawing, out), cwd=ROOT, capture_output=True, text=True, timeout=300)
+    assert done.returncode != 0
+    assert "Traceback" not in done.stdout + done.stderr
+    assert not list(out.iterdir())

@@ -1,0 +1,132 @@
+"""SVG drawings as curves: imported, dropped, and the samples."""
+
+import bpy
+import numpy as np
+import pytest
+
+
+def test_a_drawing_is_added_at_the_cursor_in_true_scale(extension, drawing):
+    bpy.context.scene.cursor.location = (1, 2, 3)
+    bpy.context.scene.unit_settings.scale_length = 0.01
+    bpy.ops.ed.undo_push(message="before")
+    assert bpy.ops.curvefold.import_drawing("EXEC_DEFAULT", True, filepath=str(drawing)) == {"FINISHED"}
+    sheet = bpy.context.active_object
+    assert bpy.context.selected_objects == [sheet]
+    assert sheet.name == "arc"
+    assert tuple(sheet.location) == (1, 2, 3)
+    assert [child.curvefold.role for child in sheet.children] == ["CREASE"]
+    assert tuple(sheet.dimensions) == pytest.approx((10, 10, 0))
+    pattern = extension("curvefold_addon.bridge.drawing").read_drawing(sheet)
+    assert np.ptp(pattern.boundary, axis=0) * pattern.unit_mm == pytest.approx([100, 100])
+    bpy.ops.ed.undo()
+    assert not bpy.data.objects
+
+
+def test_a_bad_drawing_is_one_sentence(broken_drawing):
+    with pytest.raises(RuntimeError, match=r"broken\.svg") as caught:
+        bpy.ops.curvefold.import_drawing(filepath=str(broken_drawing))
+    assert "Traceback" not in str(caught.value)
+    assert not bpy.data.objects
+
+
+def test_no_drawing():
+    with pytest.raises(RuntimeError, match="no drawing was chosen"):
+        bpy.ops.curvefold.import_drawing()
+
+
+def test_only_in_object_mode(drawing):
+    bpy.ops.curvefold.import_drawing(filepath=str(drawing))
+    bpy.ops.object.mode_set(mode="EDIT")
+    for operator in (bpy.ops.curvefold.import_drawing, bpy.ops.curvefold.add_sample):
+        with pytest.raises(RuntimeError, match="Works in Object Mode"):
+            operator()
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def test_a_dropped_drawing(extension, drawing, monkeypatch):
+    handler = bpy.types.CURVEFOLD_FH_drawing
+    assert handler.bl_import_operator == "curvefold.import_drawing"
+    assert handler.bl_file_extensions == ".svg"
+    window = bpy.context.window_manager.windows[0]
+    areas = {area.type: area for area in window.screen.areas}
+    with bpy.context.temp_override(window=window, area=areas["VIEW_3D"]):
+        assert handler.poll_drop(bpy.context)
+        # Blender's own handlers read SVG too; then it asks, which needs a window. Ours alone is called at once.
+        others = [
+            other
+            for other in bpy.types.FileHandler.__subclasses__()
+            if other is not handler and ".svg" in other.bl_file_extensions
+        ]
+        for other in others:
+            bpy.utils.unregister_class(other)
+        try:
+            bpy.ops.wm.drop_import_file(
+                "INVOKE_DEFAULT", directory=str(drawing.parent), files=[{"name": drawing.name}]
+            )
+        finally:
+            for other in others:
+                bpy.utils.register_class(other)
+    assert bpy.context.active_object.name == "arc"
+    with bpy.context.temp_override(window=window, area=areas["OUTLINER"]):
+        assert not handler.poll_drop(bpy.context)
+
+
+def test_every_sample_can_be_added(extension):
+    samples = extension("curvefold_addon.samples")
+    read = extension("curvefold_addon.bridge.drawing").read_drawing
+    assert len(samples.names()) >= 19
+    for name in samples.names():
+        assert bpy.ops.curvefold.add_sample(sample=name) == {"FINISHED"}
+        sheet = bpy.context.active_object
+        assert sheet.name == name
+        assert read(sheet).creases
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+
+
+def test_a_sample_that_is_broken(extension, broken_drawing, monkeypatch):
+    samples = extension("curvefold_addon.samples")
+    monkeypatch.setattr(samples, "drawing", lambda name: broken_drawing)
+    with pytest.raises(RuntimeError, match=r"broken\.svg"):
+        bpy.ops.curvefold.add_sample(sample="lens")
+    assert not bpy.data.objects
+
+
+def test_every_sample_has_a_small_picture(extension):
+    samples = extension("curvefold_addon.samples")
+    pictures = sorted((samples.FOLDER / "previews").glob("*.png"))
+    assert [path.stem for path in pictures] == samples.names()
+    assert sum(path.stat().st_size for path in pictures) < 150_000
+    for name in samples.names():
+        samples.icon(name)  # a number only where there is a screen
+        assert tuple(samples._previews[name].image_size) == (128, 128)
+    assert samples.icon("no such sample") == 0
+
+
+def test_the_menu_offers_every_sample(extension):
+    """The menu's own drawing, on a layout that writes down what it is told."""
+    add_sample, samples = extension("curvefold_addon.operators.add_sample"), extension("curvefold_addon.samples")
+    chosen, shown = [], []
+
+    class Layout:
+        def row(self):
+            return self
+
+        def column(self):
+            return self
+
+        def template_icon(self, icon_value, scale):
+            shown.append(icon_value)
+
+        def operator(self, name, text):
+            chosen.append(Entry())
+            return chosen[-1]
+
+    class Entry:
+        sample = ""
+
+    class Menu:
+        layout = Layout()
+
+    add_sample.SampleMenu.draw(Menu(), bpy.context)
+    assert [entry.sample for entry in chosen] == samples.names()
+    assert shown == [samples.icon(name) for name in samples.names()]

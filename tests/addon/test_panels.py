@@ -1,0 +1,260 @@
+"""The sidebar: what it says and offers to whom. Panels draw into a layout that only takes notes."""
+
+from types import SimpleNamespace
+
+import bpy
+import pytest
+
+
+class Notes:
+    """Stands in for UILayout: checks that what is asked for exists, and writes it down."""
+
+    def __init__(self, notes=None):
+        self.notes = (
+            {"texts": [], "operators": [], "properties": [], "menus": [], "grey": []} if notes is None else notes
+        )
+        self.enabled = True
+
+    def _part(self, **options):
+        return Notes(self.notes)
+
+    column = row = box = split = _part
+
+    def label(self, text="", icon="NONE"):
+        assert icon in ICONS
+        self.notes["texts"].append(text)
+
+    def separator(self):
+        pass
+
+    def prop(self, data, name, text=None, icon="NONE", **options):
+        assert name in data.bl_rna.properties, name
+        assert icon in ICONS
+        self.notes["properties"].append(name)
+
+    def operator(self, idname, text="", icon="NONE", depress=False):
+        assert icon in ICONS
+        group, _, name = idname.partition(".")
+        assert name in dir(getattr(bpy.ops, group)), idname
+        self.notes["operators"].append(idname)
+        if not self.enabled:
+            self.notes["grey"].append(idname)
+        return SimpleNamespace()
+
+    def operator_menu_enum(self, idname, name, text="", icon="NONE"):
+        self.operator(idname, text, icon)
+
+    def menu(self, idname, text="", icon="NONE"):
+        assert hasattr(bpy.types, idname)
+        self.notes["menus"].append(idname)
+
+    def template_list(self, kind, name, data, collection, active_data, active, rows=5):
+        assert hasattr(bpy.types, kind)
+        assert collection in data.bl_rna.properties
+        assert active in active_data.bl_rna.properties
+        self.notes["properties"].append(collection)
+
+
+ICONS = set(bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys())
+
+
+@pytest.fixture
+def panels(extension):
+    return extension("curvefold_addon.panels")
+
+
+@pytest.fixture
+def wording(extension):
+    return extension("curvefold_addon.wording")
+
+
+def context():
+    real = bpy.context
+    return SimpleNamespace(
+        active_object=real.active_object,
+        selected_objects=real.selected_objects,
+        scene=real.scene,
+        mode=real.mode,
+        preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
+        region=SimpleNamespace(width=260),
+    )
+
+
+def drawn(panel):
+    layout = Notes()
+    panel.draw(SimpleNamespace(layout=layout), context())
+    return layout.notes
+
+
+def shown(panels):
+    return {
+        cls.__name__
+        for cls in panels._CLASSES
+        if issubclass(cls, bpy.types.Panel) and ("poll" not in dir(cls) or cls.poll(context()))
+    }
+
+
+@pytest.fixture
+def paper():
+    bpy.ops.curvefold.add_sample(sample="one_arc")
+    bpy.ops.curvefold.make_paper(resolution=12, fold=60.0)
+    return bpy.context.active_object
+
+
+def test_a_newcomer_is_offered_a_sheet_a_sample_and_a_drawing(panels):
+    notes = drawn(panels.MainPanel)
+    assert notes["operators"] == ["curvefold.add_sheet", "curvefold.import_drawing"]
+    assert notes["menus"] == ["CURVEFOLD_MT_samples"]
+    assert shown(panels) == {"MainPanel"}
+
+
+def test_a_closed_curve_can_become_a_sheet(panels):
+    bpy.ops.curve.primitive_bezier_circle_add()
+    assert "curvefold.sheet_from_object" in drawn(panels.MainPanel)["operators"]
+
+
+def test_a_sheet_is_offered_creases_and_then_paper(panels, wording):
+    bpy.ops.curvefold.add_sheet()
+    notes = drawn(panels.MainPanel)
+    assert notes["operators"] == ["curvefold.draw_crease", "curvefold.make_paper"]
+    assert notes["grey"] == ["curvefold.make_paper"]
+    assert wording.NO_CREASE in " ".join(notes["texts"])
+    bpy.ops.curvefold.add_sample(sample="one_arc")
+    notes = drawn(panels.MainPanel)
+    assert "1 crease" in notes["texts"][0]
+    assert notes["grey"] == []
+    assert shown(panels) == {"MainPanel", "OverlaysPanel"}
+
+
+def test_troubles_of_the_drawing_are_named(panels):
+    bpy.ops.curvefold.add_sample(sample="one_arc")
+    crease = bpy.context.active_object.children[0]
+    crease.location.x += 100.0
+    bpy.context.view_layer.update()
+    assert crease.name in " ".join(drawn(panels.MainPanel)["texts"])
+
+
+def test_a_selected_crease_can_be_assigned(panels):
+    bpy.ops.curvefold.add_sample(sample="one_arc")
+    crease = bpy.context.active_object.children[0]
+    bpy.ops.object.select_all(action="DESELECT")
+    crease.select_set(True)
+    bpy.context.view_layer.objects.active = crease
+    assert drawn(panels.MainPanel)["operators"].count("curvefold.set_assignment") == 4
+
+
+def test_a_paper_says_how_it_stands_and_has_its_slider(panels, extension, paper):
+    notes = drawn(panels.MainPanel)
+    report = extension("curvefold_addon.live").report(paper.data)
+    said = " ".join(notes["texts"])
+    assert report.sentence in said
+    assert f"Stretch {report.stretch_mean:.2%} mean" in said
+    assert notes["properties"] == ["fold", "live"]
+    assert len(shown(panels)) == 10
+
+
+def test_a_paper_whose_session_is_gone_is_drawn_too(panels, extension, wording, paper):
+    live = extension("curvefold_addon.live")
+    live.forget()
+    said = " ".join(drawn(panels.MainPanel)["texts"])
+    assert wording.ASLEEP in said
+    for panel in (panels.CreasesPanel, panels.AdvancedPanel, panels.HandlesPanel):
+        drawn(panel)
+    assert live.session(paper.data) is None, "drawing a panel must not start work"
+
+
+def test_a_new_paper_says_what_to_do_with_it(panels, wording, paper):
+    def said():
+        return " ".join(drawn(panels.MainPanel)["texts"])
+
+    settings = paper.data.curvefold
+    assert wording.NEXT not in said()
+    settings.fold = 0.0
+    assert wording.NEXT in said()
+    settings.handles.add()
+    assert wording.NEXT not in said()
+
+
+def test_a_paper_that_does_not_follow_says_so(panels, wording, paper):
+    paper.data.curvefold.live = False
+    assert wording.NOT_LIVE in " ".join(drawn(panels.MainPanel)["texts"])
+
+
+def test_creases_are_listed_with_side_and_angle(panels, paper):
+    notes = drawn(panels.CreasesPanel)
+    assert {"creases", "side", "amount", "use_angle", "angle", "signed", "use_assignments"} == set(
+        notes["properties"]
+    )
+    settings = paper.data.curvefold
+    layout = Notes()
+    settings.creases[0].side = "V"
+    panels.CreaseList.draw_item(
+        None, context(), layout, settings, settings.creases[0], 0, settings, "active_crease", 0
+    )
+    texts = layout.notes["texts"]
+    assert len(texts) == 3, "the third is a lock"
+    assert texts[0] == "Crease 1"
+    assert texts[1].split()[0] in ("Valley", "Mountain")
+    assert 40 < float(texts[1].split()[1].rstrip("°,")) < 60
+
+
+def test_a_handle_is_listed_with_all_that_can_be_set(panels, paper):
+    assert drawn(panels.HandlesPanel)["properties"] == []
+    settings = paper.data.curvefold
+    settings.handles.add().name = "Corner"
+    notes = drawn(panels.HandlesPanel)
+    assert notes["properties"] == ["handles", "hook", "axes", "axes", "axes", "strength"]
+    assert {"curvefold.remove_handle", "curvefold.pin", "curvefold.place_handle"} <= set(notes["operators"])
+    layout = Notes()
+    panels.HandleList.draw_item(
+        None, context(), layout, settings, settings.handles[0], 0, settings, "active_handle"
+    )
+    assert layout.notes["properties"] == ["enabled", "name"]
+    settings.active_handle = 5
+    assert drawn(panels.HandlesPanel)["properties"] == ["handles"]
+
+
+def test_every_overlay_can_be_switched(panels, paper):
+    names = set(bpy.context.scene.curvefold.bl_rna.properties.keys()) - {"rna_type", "name", "show"}
+    assert set(drawn(panels.OverlaysPanel)["properties"]) == names
+    layout = Notes()
+    panels.OverlaysPanel.draw_header(SimpleNamespace(layout=layout), context())
+    assert layout.notes["properties"] == ["show"]
+
+
+def test_a_bake_can_be_made_and_freed(panels, wording, paper):
+    assert drawn(panels.AnimationPanel)["operators"] == ["curvefold.bake"]
+    bpy.context.scene.frame_end = 2
+    bpy.ops.curvefold.bake()
+    assert drawn(panels.AnimationPanel)["operators"] == ["curvefold.free_bake"]
+    assert wording.BAKED in " ".join(drawn(panels.MainPanel)["texts"])
+
+
+def test_drawing_and_advanced_panels_draw(panels, paper):
+    assert "sheet" in drawn(panels.DrawingPanel)["properties"]
+    assert {"angle", "resolution"} <= set(drawn(panels.AdvancedPanel)["properties"])
+
+
+@pytest.mark.parametrize(
+    ("found", "angle", "folded", "text"),
+    [
+        ("V", 61.7, True, "Valley 62°"),
+        ("M", 12.2, False, "Mountain 12°, with gaps"),
+        ("M", None, True, "Mountain"),
+        ("U", 3.0, False, "Not folded"),
+    ],
+)
+def test_what_is_said_of_a_crease(wording, extension, found, angle, folded, text):
+    report = extension("curvefold_addon.live").CreaseReport("crease 3 (Wing)", found, angle, folded)
+    assert wording.crease(report) == text
+    assert wording.crease_name(report) == "Wing"
+
+
+def test_what_is_said_fits_the_sidebar(wording):
+    sentence = "Handle 2 is 3 mm from its target: out of reach"
+    assert wording.lines(sentence, 1000.0) == [sentence]
+    narrow = wording.lines(sentence, 180.0)
+    assert " ".join(narrow) == sentence
+    assert max(map(len, narrow)) <= 22
+    assert wording.count(0, "crease") == "No creases"
+    assert wording.count(1, "crease") == "1 crease"
