@@ -30,7 +30,7 @@ class CreaseList(bpy.types.UIList):
         flt_flag: int = 0,
     ) -> None:
         found = live.crease_report(data.id_data, index)
-        row = layout.split(factor=0.5)
+        row = layout.split(factor=0.42)
         side = "U" if found is None else found.found
         row.label(text=item.name, icon=wording.SIDE_ICONS[side])
         row = row.row(align=True)
@@ -65,8 +65,8 @@ class CreasesPanel(PaperPanel, bpy.types.Panel):
 
 
 def _draw_crease(layout: bpy.types.UILayout, crease: bpy.types.PropertyGroup) -> None:
+    layout.row(align=True).prop(crease, "side", expand=True)
     column = settings_column(layout)
-    column.row(align=True).prop(crease, "side", expand=True)
     row = column.row(heading="Own Angle", align=True)
     row.prop(crease, "use_angle", text="")
     part = row.row(align=True)
@@ -90,8 +90,8 @@ class FlowPanel(PaperPanel, bpy.types.Panel):
         if settings.active_crease >= len(settings.creases):
             return
         crease = settings.creases[settings.active_crease]
+        self.layout.row(align=True).prop(crease, "flow", expand=True)
         column = settings_column(self.layout)
-        column.row(align=True).prop(crease, "flow", expand=True)
         if crease.flow == "OBJECT":
             column.prop(crease, "curve")
         elif crease.flow == "SHAPE":
@@ -145,13 +145,17 @@ class JointsPanel(PaperPanel, bpy.types.Panel):
         row.template_list(JointList.bl_idname, "", settings, "joints", settings, "active_joint", rows=3)
         row.operator("curvefold.remove_joint", text="", icon="REMOVE")
         if settings.active_joint < len(settings.joints):
-            _draw_joint(settings_column(self.layout), settings.joints[settings.active_joint])
+            _draw_joint(self.layout.column(), settings.joints[settings.active_joint])
 
 
-def _draw_joint(column: bpy.types.UILayout, joint: bpy.types.PropertyGroup) -> None:
-    column.active = joint.enabled
+def _draw_joint(layout: bpy.types.UILayout, joint: bpy.types.PropertyGroup) -> None:
+    layout.active = joint.enabled
     if joint.family == "POINTS":
-        column.row(align=True).prop(joint, "relation", expand=True)
+        layout.row(align=True).prop(joint, "relation", expand=True)
+    elif joint.family == "PATCH":
+        layout.row(align=True).prop(joint, "shape", expand=True)
+    column = settings_column(layout)
+    if joint.family == "POINTS":
         if joint.relation == "DISTANCE":
             column.prop(joint, "distance")
         elif joint.relation == "SHARE":
@@ -161,8 +165,6 @@ def _draw_joint(column: bpy.types.UILayout, joint: bpy.types.PropertyGroup) -> N
     elif joint.family == "BORDERS":
         column.prop(joint, "bending")
         column.prop(joint, "reverse")
-    else:
-        column.row(align=True).prop(joint, "shape", expand=True)
     column.prop(joint, "strength")
 
 

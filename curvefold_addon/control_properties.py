@@ -16,9 +16,9 @@ from .. import solver
 from . import live
 
 SIDES = (
-    ("U", "Free", "The paper chooses the side", "REMOVE", 0),
-    ("V", "Valley", "Folds towards the front", "COLORSET_04_VEC", 1),
-    ("M", "Mountain", "Folds towards the back", "COLORSET_01_VEC", 2),
+    ("U", "Free", "The paper chooses the side"),
+    ("V", "Valley", "Folds towards the front"),
+    ("M", "Mountain", "Folds towards the back"),
 )
 
 FLOWS = (
@@ -77,7 +77,9 @@ class CreaseSettings(bpy.types.PropertyGroup):
         update=wake,
     )
     curvature_plus: FloatProperty(
-        name="Plus", description="What is added to the curvature, in one over the length unit", update=wake
+        name="Curvature Plus",
+        description="Added to the curvature, in one over the length unit",
+        update=wake,
     )
     torsion_plus: FloatProperty(
         name="Torsion", description="How much the curve winds, in radians over the length unit", update=wake

@@ -81,8 +81,8 @@ def _is_unused(hook: bpy.types.Object) -> bool:
 
 
 def go_on(paper: bpy.types.Object) -> None:
-    """The paper follows what was changed: at once without a window, soon with one. Raises CurvefoldError."""
-    if bpy.app.background:
+    """The paper follows what was changed: at once without a window, soon with one or after Edit Mode. Raises CurvefoldError."""
+    if bpy.app.background and not paper.data.is_editmode:
         live.settle(paper.data)
     else:
         live.wake(paper.data)

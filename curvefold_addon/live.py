@@ -99,6 +99,7 @@ def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
     paper = paper_of(mesh)
     if paper is None:
         return
+    check_not_edited(mesh)
     uid = mesh.session_uid
     found = make_session(paper)
     _stale.pop(uid, None)
@@ -111,6 +112,12 @@ def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
     found.write(mesh)
     found.before = None
     _awake.discard(uid)
+
+
+def check_not_edited(mesh: bpy.types.Mesh) -> None:
+    """A mesh in Edit Mode, of whatever object that shows it, cannot be written. Raises StateError."""
+    if mesh.is_editmode:
+        raise state.StateError(f"{mesh.name} is in Edit Mode; leave it to fold the paper")
 
 
 def report(mesh: bpy.types.Mesh) -> Report | None:
@@ -248,22 +255,10 @@ def frame_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Non
         paper = _paper(uid)
         if paper is None or not _may_move(paper) or not hooks.is_animated(paper):
             continue
-        settings = paper.data.curvefold
-        found = make_session(paper)
-        before, found.frame = found.frame, scene.frame_current
-        inputs = hooks.read(paper, scene, depsgraph, found.net.frame.unit, found.why_not_at, found.drawn)
-        step = 0 if before is None else scene.frame_current - before
-        if scene.frame_current == scene.frame_start:
-            found.start_anew(inputs, SETTLING)
-        elif 0 < step <= max(1, scene.frame_step):
-            found.advance(inputs, step * settings.iterations_per_frame)
-        elif bpy.app.background:
-            found.advance(inputs, SETTLING)
-        else:
-            _rouse({uid})
-            continue
-        found.write(paper.data)
-        found.before = None
+        try:
+            _follow_frame(paper, scene, depsgraph)
+        except (solver.CurvefoldError, state.StateError) as error:
+            _faults[uid] = str(error)  # the other papers go on
 
 
 def park() -> None:
@@ -358,7 +353,8 @@ def _paper(uid: int) -> bpy.types.Object | None:
 
 
 def _may_move(paper: bpy.types.Object) -> bool:
-    return paper.data.curvefold.live and paper.data.library is None
+    mesh = paper.data
+    return mesh.curvefold.live and mesh.library is None and not mesh.is_editmode
 
 
 def _inputs(paper: bpy.types.Object, found: Session) -> hooks.Inputs:
@@ -393,6 +389,24 @@ def _take(paper: bpy.types.Object, made: Session) -> None:
     made.take_up(_inputs(paper, made))
 
 
+def _follow_frame(paper: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    found = make_session(paper)
+    before, found.frame = found.frame, scene.frame_current
+    inputs = hooks.read(paper, scene, depsgraph, found.net.frame.unit, found.why_not_at, found.drawn)
+    step = 0 if before is None else scene.frame_current - before
+    if scene.frame_current == scene.frame_start:
+        found.start_anew(inputs, SETTLING)
+    elif 0 < step <= max(1, scene.frame_step):
+        found.advance(inputs, step * paper.data.curvefold.iterations_per_frame)
+    elif bpy.app.background:
+        found.advance(inputs, SETTLING)
+    else:
+        _rouse({paper.data.session_uid})
+        return
+    found.write(paper.data)
+    found.before = None
+
+
 def _follow(uid: int, deadline: float, transforming: bool) -> bool:
     """Works on one paper until the clock says ``deadline``; whether it has more to do."""
     paper = _paper(uid)
@@ -425,11 +439,15 @@ def _follow(uid: int, deadline: float, transforming: bool) -> bool:
     found = _sessions[uid]
     if uid in _stale and not transforming and time.monotonic() - _stale[uid] >= DRAWING_RESTS:
         del _stale[uid]
-        source = _wanted_source(mesh)
-        if source != found.source:
-            _making[uid] = pool().submit(carried_session, source, found.snapshot())
-            return True
-        _faults.pop(uid, None)
+        try:
+            source = _wanted_source(mesh)
+        except (solver.CurvefoldError, state.StateError) as error:
+            _faults[uid] = str(error)  # it goes on as it was
+        else:
+            if source != found.source:
+                _making[uid] = pool().submit(carried_session, source, found.snapshot())
+                return True
+            _faults.pop(uid, None)
     inputs = _inputs(paper, found)
     if not transforming and found.is_back_at_start(inputs):
         found.return_to_start()

@@ -120,7 +120,7 @@ class PaperSettings(bpy.types.PropertyGroup):
     fold: FloatProperty(
         name="Fold",
         description="How far all creases are folded, each on the side it chooses; "
-        "at zero, a paper with handles is left to them",
+        "at zero, a paper with handles, angles, curves or joints is left to them",
         subtype="PERCENTAGE",
         default=0.0,
         min=0.0,

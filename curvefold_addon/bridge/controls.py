@@ -36,8 +36,11 @@ class DrawnCrease:
 
 @dataclass(frozen=True)
 class Told:
-    """controls, and for each what the user calls it; weights; faults: why others do not act, one sentence each."""
+    """angle: degrees all creases are driven to, None without a drive; controls, and for each what the user calls
+    it; weights; faults: why others do not act, one sentence each.
+    """
 
+    angle: float | None
     controls: tuple[Control, ...] = ()
     names: tuple[str, ...] = ()
     weights: Weights = USUAL
@@ -61,9 +64,9 @@ class _Gathering:
             self.names.append(name)
 
     @property
-    def asks(self) -> bool:
-        """Whether they bend the paper by themselves."""
-        return any(not isinstance(control, Amount) for control in self.controls)
+    def lead(self) -> bool:
+        """Whether they fold the paper by themselves."""
+        return any(isinstance(control, Angle | Curve | Glue | Pair) for control in self.controls)
 
 
 class CurveTargetError(ValueError):
@@ -74,14 +77,13 @@ class CurveTargetError(ValueError):
 TargetReader = Callable[[Any], tuple[Place, ...]]
 
 
-def told(
-    settings: Any, values: Any, drawn: Sequence[DrawnCrease], driven: float | None, target: TargetReader
-) -> Told:
+def told(settings: Any, values: Any, held: bool, drawn: Sequence[DrawnCrease], target: TargetReader) -> Told:
     """What a paper is told beside its handles.
 
-    settings, values: of the paper as they are kept and as they are evaluated; driven: degrees all creases are
-    driven to, None without a drive; target: reads curve objects.
+    settings, values: of the paper as they are kept and as they are evaluated; held: whether it has handles;
+    target: reads curve objects.
     """
+    angle: float | None = math.degrees(values.angle) * values.fold / 100.0
     if _names(values) != _names(settings):
         values = settings  # Blender evaluates nothing when an entry comes or goes
     gathering = _Gathering()
@@ -93,14 +95,20 @@ def told(
     for entry in values.joints:
         if entry.enabled:
             _tell_joint(gathering, entry)
-    # A sheet that is asked for nothing else lies flat, whatever the sides of its creases.
-    if driven != 0.0 or gathering.asks:
+    if values.fold == 0.0 and (held or gathering.lead):
+        angle = None
+    # A sheet that is asked for nothing lies flat, whatever the sides of its creases.
+    if angle != 0.0:
         for crease, entry, number in creases:
-            side = _side(entry, crease.letter if values.use_assignments else "U", driven)
+            side = _side(entry, crease.letter if values.use_assignments else "U", angle)
             if side in SIDES:
                 gathering.add(crease.name, Side, number, side)
     return Told(
-        tuple(gathering.controls), tuple(gathering.names), weights_of(settings.weights), tuple(gathering.faults)
+        angle,
+        tuple(gathering.controls),
+        tuple(gathering.names),
+        weights_of(settings.weights),
+        tuple(gathering.faults),
     )
 
 
@@ -217,7 +225,7 @@ def numbers_of(controls: Sequence[Control], weights: Weights) -> list[float]:
     result: list[float] = []
     for control in controls:
         result.append(_of_word(control.kind))
-        for entry in fields(control):  # type: ignore[arg-type]  # every kind of control is a dataclass
+        for entry in fields(control):
             result += _numbers(getattr(control, entry.name))
     if weights != USUAL:
         result += [float(getattr(weights, entry.name)) for entry in fields(weights)]

@@ -11,7 +11,7 @@ import numpy as np
 from mathutils import Matrix, Vector  # type: ignore[import-not-found]
 from numpy.typing import NDArray
 
-from ...solver import Amount, Handle, Weights
+from ...solver import Amount, Handle, Keep, Weights
 from ...solver.controls.control import Control
 from . import controls as crease_controls
 from .curve_targets import target_points
@@ -50,7 +50,7 @@ class Inputs:
     @property
     def asks(self) -> bool:
         """Whether some control may bend a flat sheet."""
-        return any(not isinstance(control, Amount) for control in self.controls)
+        return any(not isinstance(control, Amount | Keep) for control in self.controls)
 
     def numbers(self) -> NDArray[np.float64]:
         """(2 + C + 9H,) angle (NaN for None), C and the numbers of the controls and weights, then at, target, axes
@@ -124,10 +124,10 @@ def read(
         handles.append(handle)
         indices.append(index)
 
-    def target(item: Any) -> tuple[crease_controls.Place, ...]:
+    def curve_points(item: Any) -> tuple[crease_controls.Place, ...]:
         return target_points(item, scene, lambda curve: hook_matrix(curve, paper, depsgraph))
 
-    return with_controls(settings, values, tuple(handles), drawn, target, tuple(indices), tuple(faults))
+    return with_controls(settings, values, tuple(handles), drawn, curve_points, tuple(indices), tuple(faults))
 
 
 def with_controls(
@@ -140,11 +140,8 @@ def with_controls(
     faults: tuple[str, ...] = (),
 ) -> Inputs:
     """What a paper with such settings, kept and evaluated, and such handles is told."""
-    angle: float | None = math.degrees(values.angle) * values.fold / 100.0
-    if values.fold == 0.0 and handles:
-        angle = None
-    told = crease_controls.told(settings, values, drawn, angle, target)
-    return Inputs(angle, handles, indices, (*faults, *told.faults), told.controls, told.names, told.weights)
+    told = crease_controls.told(settings, values, bool(handles), drawn, target)
+    return Inputs(told.angle, handles, indices, (*faults, *told.faults), told.controls, told.names, told.weights)
 
 
 def handle_label(settings: Any, index: int) -> str:

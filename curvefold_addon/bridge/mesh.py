@@ -86,6 +86,21 @@ def write_positions(mesh: Any, positions: NDArray[np.float64]) -> None:
     mesh.update()
 
 
+def has_geometry_of(mesh: Any, surface: RenderMap) -> bool:
+    """Whether a mesh still has what ``fill`` gave it: nobody has cut it, or taken its marks away."""
+    counts = (len(mesh.vertices), len(mesh.loops), len(mesh.polygons))
+    if counts != (len(surface.uv), len(surface.face_vertices), len(surface.face_start) - 1):
+        return False
+    return FLAT_UV in mesh.uv_layers and all(name in mesh.attributes for name in (PATCH, CREASE, CREASE_EDGE))
+
+
+def shows(mesh: Any, positions: NDArray[np.float64]) -> bool:
+    """Whether the vertices of a mesh are at (R,3) positions."""
+    shown = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", shown)
+    return np.array_equal(shown, _single(positions))
+
+
 def world_positions(paper: Any) -> NDArray[np.float64]:
     """(R,3) vertex positions of an object in the world."""
     mesh = paper.data

@@ -10,6 +10,7 @@ import bpy
 from ...solver import Crease, CreasePattern, Handle, Status
 from . import controls, hooks, state
 from . import mesh as surface
+from .kept_controls import keep_controls
 from .session import Session, drawn_of
 
 if TYPE_CHECKING:
@@ -57,7 +58,9 @@ def keep(mesh: Any, result: FoldResult) -> None:
         pattern = CreasePattern(pattern.boundary, pattern.holes, free, pattern.name, pattern.unit_mm, pattern.notes)
     source = state.source_of(pattern, description.resolution, scale)
     state.store(mesh, source, result.positions * scale)
-    controls.match_creases(settings, drawn_of(source))
+    drawn = drawn_of(source)
+    controls.match_creases(settings, drawn)
+    keep_controls(settings, description.controls, description.weights, drawn, scale)
     if result.last.status is Status.SETTLED:
         state.store_rest(mesh, _told(settings, source).numbers())
 

@@ -90,6 +90,8 @@ def _standing(
         return "trouble", fault
     if inputs is not None and inputs.faults:
         return "trouble", inputs.faults[0]
+    if found.refused:
+        return "trouble", found.refused[0]
     if found.failed:
         return "trouble", "the numbers ran away; the last good shape is kept"
     asked = None if inputs is None else inputs.angle
@@ -100,9 +102,8 @@ def _standing(
         return "trouble", late
     if np.ptp(found.positions[:, 2]) <= _FLAT * found.net.frame.unit:
         return "settled", "flat"
-    lacks = _lacks(found)
-    if lacks:
-        return "trouble", lacks[0]
+    if found.findings:
+        return "trouble", found.findings[0]
     unfolded = [crease.label for crease in creases if not crease.folded]
     if unfolded:
         more = f" and {len(unfolded) - 1} more" if len(unfolded) > 1 else ""

@@ -280,8 +280,8 @@ class Session:
 
     def write(self, mesh: Any) -> None:
         """Shows the present shape and keeps it on the datablock."""
+        self._show(mesh)
         if self.dirty:
-            surface.write_positions(mesh, self.net.render_map.apply(self.positions))
             state.store_positions(mesh, self.positions)
             self._written = self.positions
             self.version = next(_versions)
@@ -293,6 +293,16 @@ class Session:
             _ends[self.run] = (self.source, Rest(self.rest, self.positions, self.measurement))
             while len(_ends) > _KEPT_ENDS:
                 del _ends[next(iter(_ends))]
+
+    def _show(self, mesh: Any) -> None:
+        """Whatever else has been done to the mesh is undone: a paper cannot be cut."""
+        render_map = self.net.render_map
+        if not surface.has_geometry_of(mesh, render_map):
+            surface.fill(mesh, render_map, self.positions)
+            return
+        shown = render_map.apply(self.positions)
+        if self.dirty or not surface.shows(mesh, shown):
+            surface.write_positions(mesh, shown)
 
     def take_up(self, inputs: Inputs) -> None:
         """After undo and redo: where this motion has ended before, asked the same, the paper is there at once.

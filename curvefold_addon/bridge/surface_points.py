@@ -15,6 +15,7 @@ from mathutils.geometry import (  # type: ignore[import-not-found]
 )
 
 from .mesh import CREASE, FLAT_UV, NO_CREASE, PATCH
+from .state import StateError
 
 Point = tuple[float, float]
 
@@ -39,7 +40,7 @@ def crease_under_ray(mesh: Any, origin: Any, direction: Any) -> int | None:
     if place is None:
         return None
     best, best_gap = None, float("inf")
-    for item, edge in zip(mesh.attributes[CREASE].data, mesh.edges, strict=True):
+    for item, edge in zip(_layer(mesh, mesh.attributes, CREASE).data, mesh.edges, strict=True):
         if item.value == NO_CREASE:
             continue
         start, end = (mesh.vertices[k].co for k in edge.vertices)
@@ -59,7 +60,7 @@ def nearest(mesh: Any, place: Any) -> SurfacePoint:
 def selected(mesh: Any) -> list[SurfacePoint]:
     """The selected vertices of a mesh in Edit Mode."""
     edited = bmesh.from_edit_mesh(mesh)
-    flat = edited.loops.layers.uv[FLAT_UV]
+    flat = _layer(mesh, edited.loops.layers.uv, FLAT_UV)
     points = []
     for vertex in edited.verts:
         if vertex.select and vertex.link_loops:
@@ -71,7 +72,7 @@ def selected(mesh: Any) -> list[SurfacePoint]:
 def selected_patches(mesh: Any) -> list[Point]:
     """A point of the flat sheet in each patch of which a face is selected in Edit Mode."""
     edited = bmesh.from_edit_mesh(mesh)
-    flat, patch = edited.loops.layers.uv[FLAT_UV], edited.faces.layers.int[PATCH]
+    flat, patch = _layer(mesh, edited.loops.layers.uv, FLAT_UV), _layer(mesh, edited.faces.layers.int, PATCH)
     largest: dict[int, Any] = {}
     for face in edited.faces:
         if face.select and (face[patch] not in largest or face.calc_area() > largest[face[patch]].calc_area()):
@@ -86,7 +87,7 @@ def selected_patches(mesh: Any) -> list[Point]:
 def selected_borders(mesh: Any) -> list[tuple[Point, Point]]:
     """Ends, on the flat sheet, of each stretch of the border whose vertices are selected in Edit Mode."""
     edited = bmesh.from_edit_mesh(mesh)
-    flat = edited.loops.layers.uv[FLAT_UV]
+    flat = _layer(mesh, edited.loops.layers.uv, FLAT_UV)
     edges = [e for e in edited.edges if e.is_boundary and all(v.select for v in e.verts)]
     near: dict[Any, list[Any]] = {}
     for edge in edges:
@@ -98,13 +99,22 @@ def selected_borders(mesh: Any) -> list[tuple[Point, Point]]:
     for end in ends:
         if end in seen:
             continue
-        before, here = None, end
-        while here is not None:
-            seen.add(here)
-            before, here = here, next((v for v in near[here] if v not in seen), None)
-        places = [vertex.link_loops[0][flat].uv for vertex in (end, before)]
+        seen.add(end)
+        last = end
+        while onward := [vertex for vertex in near[last] if vertex not in seen]:
+            last = onward[0]
+            seen.add(last)
+        places = [vertex.link_loops[0][flat].uv for vertex in (end, last)]
         stretches.append(((places[0].x, places[0].y), (places[1].x, places[1].y)))
     return stretches
+
+
+def _layer(mesh: Any, layers: Any, name: str) -> Any:
+    """Raises StateError when somebody has taken it away; the paper is mended when it is next written."""
+    layer = layers.get(name)
+    if layer is None:
+        raise StateError(f"{mesh.name} has lost its {name} layer; settle the paper in Object Mode to mend it")
+    return layer
 
 
 def _tree(mesh: Any) -> Any:
@@ -115,7 +125,7 @@ def _tree(mesh: Any) -> Any:
 
 
 def _on_face(mesh: Any, face: int, place: Any) -> SurfacePoint:
-    flat = mesh.uv_layers[FLAT_UV].uv
+    flat = _layer(mesh, mesh.uv_layers, FLAT_UV).uv
     mesh.calc_loop_triangles()
     best, best_gap = None, float("inf")
     for triangle in mesh.loop_triangles:

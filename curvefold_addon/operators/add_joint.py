@@ -127,7 +127,6 @@ def _add(paper: bpy.types.Object, family: str) -> bpy.types.PropertyGroup:
     joint = settings.joints.add()
     joint.name, joint.family = f"{word} {number}", family
     settings.active_joint = len(settings.joints) - 1
-    paper.data.update_tag()
     return joint
 
 

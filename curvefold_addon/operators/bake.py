@@ -24,6 +24,7 @@ class Bake(OnPaper, bpy.types.Operator):
             return self.refuse("The paper has shape keys already; free its bake first")
         if not mesh.curvefold.live:
             return self.refuse("The paper is not live, so there is nothing to bake")
+        live.make_session(paper)  # before anything is changed: a paper that cannot be read stays as it is
         present = scene.frame_current
         shapes = []
         for frame in range(scene.frame_start, scene.frame_end + 1):

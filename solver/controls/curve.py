@@ -18,7 +18,7 @@ from ..drive import MEAN_BUDGET, mean_stretch
 from ..errors import DescriptionError
 from ..net.piecewise_dog import PiecewiseDog
 from ..optimize.term import LinearTerm
-from .control import Control, ControlPull, CreaseName, crease_index, crease_name, number, positive, vector
+from .control import Control, ControlPull, CreaseName, crease_index, crease_name, flag, number, positive, vector
 from .pull import Finding, Lack, Term
 from .space_curve import CurveShape, build_curve, laid_onto, measure_curve, resampled
 
@@ -34,6 +34,8 @@ _NEARLY_STRAIGHT = 0.1
 _SHORTER = 0.02
 #: A curve that is missed although the paper is far from stretched pulls harder, at most so often.
 _STIFFER, _STIFFENINGS = 4.0, 4
+#: Where on its way from flat a crease is, is found in steps of one of so many parts.
+_PARTS = 200
 #: At rest a free curve is laid onto the crease anew at most so often.
 _LAYINGS = 6
 #: Points farther than this from the curve at rest pull harder, and farther than that have missed it, net units.
@@ -50,6 +52,8 @@ class Curve(Control):
     points: or a curve in space, (x, y, z) each, drawing units, from the crease's start on; the four numbers
         above then count for nothing
     progress: the part of the way that is gone, 0 to 1; speed: how fast, in parts of the usual
+    from_flat: the way, and what "it is" above means, begin at the flat crease and not at the present one; then
+        the same words ask for the same shape whatever the paper was told before
     strength: how hard the curve pulls, in parts of the usual weight
     """
 
@@ -62,6 +66,7 @@ class Curve(Control):
     progress: float = 1.0
     speed: float = 1.0
     strength: float = 1.0
+    from_flat: bool = False
 
     kind = "curve"
 
@@ -72,6 +77,7 @@ class Curve(Control):
         number("progress", self.progress, 0.0, 1.0)
         positive("speed", self.speed)
         positive("strength", self.strength)
+        flag("from_flat", self.from_flat)
         if self.points is not None:
             if isinstance(self.points, str) or not isinstance(self.points, Sequence) or len(self.points) < 2:
                 raise DescriptionError("'points' must be a list of at least two points")
@@ -86,6 +92,7 @@ class Curve(Control):
             self.torsion_times,
             self.torsion_plus,
             self.points,
+            from_flat=self.from_flat,
         )
 
 
@@ -118,6 +125,16 @@ class _Flow:
         # Where the curve ends flatter than it can, by its sampling, it still ends where it was told.
         curvature = np.where(part >= 1.0, self.end.curvature, curvature)
         return CurveShape(curvature, (1 - part) * self.start.torsion + part * self.end.torsion)
+
+    def nearest_part(self, present: CurveShape) -> float:
+        """The part of the way whose curve is most like this shape."""
+        parts = np.linspace(0.0, 1.0, _PARTS + 1)
+        misses = []
+        for part in parts:
+            shape = self.shape(float(part))
+            bend = np.abs(shape.curvature) - np.abs(present.curvature)
+            misses.append(float(bend @ bend + ((shape.torsion - present.torsion) ** 2).sum()))
+        return float(parts[int(np.argmin(misses))])
 
     def leads_away(self) -> bool:
         """Whether the end is another shape or place than the start."""
@@ -269,7 +286,8 @@ class CurvePull(ControlPull):
         flat = np.column_stack([net.crease_points.position[points], np.zeros(len(points))])
         flat_shape = measure_curve(flat, turn)
         present = self._present(points, x)
-        start = measure_curve(present, turn)
+        now = measure_curve(present, turn)
+        start = flat_shape if control.from_flat else now
         if control.points is None:
             end_places = None
             sign = np.where(start.curvature < 0, -1.0, 1.0)
@@ -292,7 +310,11 @@ class CurvePull(ControlPull):
                 element=label,
                 place=tuple(place.tolist()),
             )
-        return _Flow(control, label, points, arc, bare, start, end, present, end_places)
+        flow = _Flow(control, label, points, arc, bare, start, end, present, end_places)
+        if control.from_flat:
+            flow.start_places = flat
+            flow.part = flow.nearest_part(now)
+        return flow
 
     def _on_curve(self, control: Curve, label: str, arc: FloatArray, index: int) -> FloatArray:
         """(n,3) the points of a space curve as far apart along it as the crease's are, net units."""

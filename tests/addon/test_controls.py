@@ -346,3 +346,34 @@ def test_picking_begins_only_in_a_3d_view(picking):
     operator = SimpleNamespace(refuse=said.append)
     picking.PickCrease.invoke(operator, SimpleNamespace(area=None), None)
     assert said == ["Creases are picked in a 3D view"]
+
+
+# --- from the command line ------------------------------------------------------------------------------------
+
+
+def test_the_controls_of_a_finished_fold_are_settings_of_its_paper(extension, live, tmp_path):
+    solver = extension("solver")
+    path = tmp_path / "arcs.svg"
+    path.write_text(ARCS)
+    told = (
+        solver.Amount(1, 0.5),
+        solver.Side("Bottom", "M"),
+        solver.Angle(-20.0, crease="Top", signed=True),
+        solver.Pair((0.0, 0.0), (100.0, 0.0), distance=99.0),
+        solver.Pair((0.0, 100.0), (100.0, 100.0), axes=(False, False, True)),
+    )
+    weights = solver.Weights(sides=50.0)
+    description = solver.FoldDescription(resolution=12, angle=30.0, controls=told, weights=weights)
+    result = solver.fold(solver.read_pattern(path), description)
+    paper = extension("curvefold_addon.bridge.mesh").add_paper(result, bpy.context.collection, None)
+    extension("curvefold_addon.bridge.papers").keep(paper.data, result)
+    assert rests(live, paper)
+    again = live.session(paper.data).inputs
+    bottom, top = creases(paper)
+    assert (bottom.side, bottom.amount, top.signed) == ("M", 50.0, True)
+    assert np.degrees(top.angle) == pytest.approx(-20.0)
+    assert [joint.relation for joint in paper.data.curvefold.joints] == ["DISTANCE", "SHARE"]
+    assert again.weights == weights
+    pair = next(control for control in again.controls if control.kind == "pair")
+    assert (pair.second[0], pair.distance) == pytest.approx((0.1, 0.099))
+    assert {control.kind for control in again.controls} == {"amount", "side", "angle", "pair"}

@@ -1,5 +1,6 @@
 """The sidebar: what it says and offers to whom. Panels draw into a layout that only takes notes."""
 
+from dataclasses import fields
 from types import SimpleNamespace
 
 import bpy
@@ -258,3 +259,43 @@ def test_what_is_said_fits_the_sidebar(wording):
     assert max(map(len, narrow)) <= 22
     assert wording.count(0, "crease") == "No creases"
     assert wording.count(1, "crease") == "1 crease"
+
+
+def test_joints_and_flows_show_what_can_be_set_of_them(panels, paper):
+    assert drawn(panels.JointsPanel)["properties"] == []
+    settings = paper.data.curvefold
+    joint = settings.joints.add()
+    expected = {
+        "POINTS": ["relation", "strength"],
+        "BORDERS": ["bending", "reverse", "strength"],
+        "PATCH": ["shape", "strength"],
+    }
+    for family, names in expected.items():
+        joint.family = family
+        assert drawn(panels.JointsPanel)["properties"] == ["joints", *names]
+    joint.family, joint.relation = "POINTS", "DISTANCE"
+    assert "distance" in drawn(panels.JointsPanel)["properties"]
+    layout = Notes()
+    panels.JointList.draw_item(None, context(), layout, settings, joint, 0, settings, "active_joint")
+    assert layout.notes["properties"] == ["enabled", "name"]
+    assert drawn(panels.FlowPanel)["properties"] == ["flow"]
+    settings.creases[0].flow = "OBJECT"
+    assert drawn(panels.FlowPanel)["properties"] == ["flow", "curve", "progress"]
+    settings.active_joint = settings.active_crease = 7
+    assert drawn(panels.JointsPanel)["properties"] == ["joints"]
+    assert drawn(panels.FlowPanel)["properties"] == []
+
+
+def test_every_weight_of_the_solver_can_be_set(panels, extension, paper):
+    solver = extension("solver")
+    assert set(drawn(panels.WeightsPanel)["properties"]) == {field.name for field in fields(solver.Weights)}
+
+
+def test_what_cannot_be_had_is_said_above_the_creases(panels, extension, paper):
+    live = extension("curvefold_addon.live")
+    crease = paper.data.curvefold.creases[0]
+    crease.use_angle, crease.signed, crease.angle, crease.side = True, True, 0.5, "M"
+    live.settle(paper.data)
+    lack = live.report(paper.data).lacks[0]
+    assert "is to be a mountain" in lack
+    assert lack in " ".join(drawn(panels.CreasesPanel)["texts"])

@@ -33,7 +33,7 @@ CONTROLS: tuple[Control, ...] = (
     Pair((0.1, 0.2), (0.9, 0.2), axes=(False, True, False)),
     Pair((0.0, 0.0), (1.0, 0.0), distance=0.75, strength=3.0),
     Keep((0.5, 0.9), shape="rigid"),
-    Curve(1, curvature_times=1.2, torsion_plus=-0.5, progress=0.5, speed=2.0),
+    Curve(1, curvature_times=1.2, torsion_plus=-0.5, progress=0.5, speed=2.0, from_flat=True),
     Curve("upper", points=((0.0, 0.0, 0.0), (0.5, 0.2, 0.1), (1.5, 0.0, 0.0))),
     Glue(((0.0, 0.0), (0.0, 1.0)), ((1.0, 0.0), (1.0, 1.0)), bending=False),
 )

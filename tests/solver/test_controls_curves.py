@@ -99,6 +99,25 @@ def test_curvature_times_folds_an_arc_by_its_cosine(exact: ModuleType, times: fl
     assert not model.findings
 
 
+def test_from_flat_the_same_words_ask_for_the_same_shape_whatever_was_before(exact: ModuleType) -> None:
+    net = solver.build_net(exact.arc(1.5).pattern(low=-1.3, high=0.7), 16)
+    half, whole = (Curve(1, curvature_times=1.4, progress=p, from_flat=True) for p in (0.5, 1.0))
+    model = solver.FoldModel(net)
+    model.set_controls([half])
+    angle = float(np.nanmedian(settle(model).fold_angle))
+    assert 0.3 < angle / (2 * np.degrees(np.arccos(1 / 1.4))) < 0.7
+    again = solver.FoldModel(net, model.positions)
+    again.set_controls([half])
+    assert np.nanmedian(settle(again).fold_angle) == pytest.approx(angle, abs=0.5)
+    for start in (model.positions, None):
+        model = solver.FoldModel(net, start)
+        model.set_controls([whole])
+        assert np.nanmedian(settle(model).fold_angle) == pytest.approx(2 * np.degrees(np.arccos(1 / 1.4)), abs=2)
+        relative = solver.FoldModel(net, model.positions)
+        relative.set_controls([whole])
+        assert not relative.findings, "it is there already"
+
+
 def test_curvature_plus_is_in_the_drawings_units(exact: ModuleType) -> None:
     """The arc's radius is 2: plus 0.25 makes its curvature 1.5 times what it was."""
     net = solver.build_net(exact.arc(1.5).pattern(low=-1.3, high=0.7), 20)

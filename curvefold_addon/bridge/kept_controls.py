@@ -1,0 +1,64 @@
+"""From the controls of a fold that is finished to the settings of the paper that goes on from it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any
+
+from ...solver import Amount, Angle, Curve, Glue, Keep, Pair, Side, Weights
+from ...solver.controls.control import Control, crease_index
+from .controls import DrawnCrease
+
+
+def keep_controls(
+    settings: Any, controls: Sequence[Control], weights: Weights, drawn: Sequence[DrawnCrease], scale: float
+) -> None:
+    """Says in the settings what the controls say. scale: the paper's units in one of the drawing's.
+
+    Angles at single points and curves given by points have no settings and are left out.
+    """
+    labels = [crease.label for crease in drawn]
+    for entry in fields(Weights):
+        setattr(settings.weights, entry.name, getattr(weights, entry.name))
+    for control in controls:
+        if isinstance(control, Pair | Keep | Glue):
+            _keep_joint(settings.joints.add(), control, len(settings.joints), scale)
+        elif isinstance(control, Side | Amount | Angle | Curve) and control.crease is not None:
+            _keep_crease(settings.creases[crease_index(labels, control.crease)], control, scale)
+
+
+def _keep_crease(crease: Any, control: Side | Amount | Angle | Curve, scale: float) -> None:
+    if isinstance(control, Side):
+        crease.side = control.side
+    elif isinstance(control, Amount):
+        crease.amount = 100.0 * control.part
+    elif isinstance(control, Angle):
+        if control.at is None:
+            crease.use_angle, crease.signed, crease.angle = True, control.signed, math.radians(control.degrees)
+    elif control.points is None:
+        crease.flow, crease.progress = "SHAPE", 100.0 * control.progress
+        crease.curvature_times = control.curvature_times
+        crease.curvature_plus, crease.torsion_plus = control.curvature_plus / scale, control.torsion_plus / scale
+
+
+def _keep_joint(joint: Any, control: Pair | Keep | Glue, number: int, scale: float) -> None:
+    joint.name = f"Joint {number}"
+    joint.strength = control.strength
+    if isinstance(control, Keep):
+        joint.family, joint.shape, joint.first = "PATCH", control.shape.upper(), _scaled(control.at, scale)
+    elif isinstance(control, Glue):
+        joint.family, joint.bending = "BORDERS", control.bending
+        ends = [_scaled(end, scale) for end in (*control.first, *control.second)]
+        joint.first, joint.second, joint.third, joint.fourth = ends
+    else:
+        joint.first, joint.second = _scaled(control.first, scale), _scaled(control.second, scale)
+        joint.axes = control.axes
+        joint.relation = "MEET" if all(control.axes) else "SHARE"
+        if control.distance is not None:
+            joint.relation, joint.distance = "DISTANCE", control.distance * scale
+
+
+def _scaled(point: Sequence[float], scale: float) -> tuple[float, float]:
+    return point[0] * scale, point[1] * scale
