@@ -2,17 +2,21 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
-.PHONY: help demo test test-all zip lint clean wheels
+.PHONY: help demo test test-all test-gui zip lint clean wheels
 
 # The Blender that demo and test use, and all that test-all uses.
 BLENDER := 5.0.1
 BLENDERS := 4.2.23 4.5.15 5.0.1 5.2.3
 DEMO := sample_patterns/corner_arcs.svg
+# What test-gui runs in (trixie: 4.3, sid: 5.2), and where it writes the user guide's pictures, if anywhere.
+export BLENDER_GUI := trixie
+export GUIDE_PICTURES :=
 
 help:
 	@echo "make demo      fold and render a sample: out/demo.png, out/demo.blend, out/demo.json"
 	@echo "make test      lint, solver, extension in Blender $(BLENDER), built zip"
 	@echo "make test-all  the same in Blender $(BLENDERS)"
+	@echo "make test-gui  a person's way through the extension, in a real Blender on a virtual screen (needs root)"
 	@echo "make zip       dist/curvefold-*.zip, one a platform"
 	@echo "make lint      ruff and mypy"
 	@echo "make clean     remove what was built (environments and downloads stay)"
@@ -36,6 +40,9 @@ test-all: lint zip
 	@python="$$(scripts/setup.sh solver)"
 	"$$python" -m pytest tests/architecture tests/solver
 	scripts/test_blender.sh $(BLENDERS)
+
+test-gui: zip
+	@"$$(scripts/setup.sh solver)" -m pytest -x -s tests/gui
 
 wheels:
 	@"$$(scripts/setup.sh solver)" scripts/wheels.py
