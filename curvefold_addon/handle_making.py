@@ -81,7 +81,10 @@ def _is_unused(hook: bpy.types.Object) -> bool:
 
 
 def go_on(paper: bpy.types.Object) -> None:
-    """The paper follows what was changed: at once without a window, soon with one or after Edit Mode. Raises CurvefoldError."""
+    """The paper follows what was changed: at once without a window, soon with one or after Edit Mode.
+
+    Raises CurvefoldError, StateError.
+    """
     if bpy.app.background and not paper.data.is_editmode:
         live.settle(paper.data)
     else:

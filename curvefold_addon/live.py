@@ -428,14 +428,19 @@ def _follow(uid: int, deadline: float, transforming: bool) -> bool:
             made = _making[uid].result(timeout=max(0.0, deadline - time.perf_counter()))
         except TimeoutError:
             return True
-        finally:
-            if _making[uid].done():
-                del _making[uid]
-        _faults.pop(uid, None)
-        if uid in _sessions:
-            adopt(paper, made)
+        except (solver.CurvefoldError, state.StateError) as error:
+            if uid not in _sessions:
+                raise
+            _faults[uid] = str(error)  # the drawing cannot be folded; the paper goes on as it was
         else:
-            _take(paper, made)
+            _faults.pop(uid, None)
+            if uid in _sessions:
+                adopt(paper, made)
+            else:
+                _take(paper, made)
+        finally:
+            if uid in _making and _making[uid].done():
+                del _making[uid]
     found = _sessions[uid]
     if uid in _stale and not transforming and time.monotonic() - _stale[uid] >= DRAWING_RESTS:
         del _stale[uid]
@@ -445,6 +450,7 @@ def _follow(uid: int, deadline: float, transforming: bool) -> bool:
             _faults[uid] = str(error)  # it goes on as it was
         else:
             if source != found.source:
+                found.write(mesh)  # what undo may just have led to
                 _making[uid] = pool().submit(carried_session, source, found.snapshot())
                 return True
             _faults.pop(uid, None)
