@@ -18,9 +18,8 @@ from ..net.piecewise_dog import PiecewiseDog
 from ..optimize.term import LinearTerm
 from .control import Control, ControlPull, flag, positive
 from .control import vector as numbers
-from .handle_pull import HANDLE_RATE
 from .pair import located_pair
-from .pull import Finding, Lack, Term
+from .pull import JOINT_RATE, Finding, Lack, Term
 
 #: Borders whose lengths differ by more than this part cannot be glued.
 _EQUAL = 0.01
@@ -139,7 +138,7 @@ class GluePull(ControlPull):
 
     def move(self, x: FloatArray, pace: float) -> bool:
         if self._open > 0.0:
-            left = max(0.0, self._open - HANDLE_RATE * pace)
+            left = max(0.0, self._open - JOINT_RATE * pace)
             present = self._gaps(x)
             largest = max(float(np.linalg.norm(present, axis=1).max()), 1e-300)
             # The gaps turn and even out on their way: what is left of them keeps the shape that they have.

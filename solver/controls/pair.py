@@ -16,8 +16,7 @@ from ..net.piecewise_dog import PiecewiseDog
 from ..objectives.distance import Distance
 from ..objectives.handles import AxisHandles
 from .control import Control, ControlPull, number, positive, vector
-from .handle_pull import HANDLE_RATE
-from .pull import Finding, Lack, Term
+from .pull import JOINT_RATE, Finding, Lack, Term
 
 #: Pairs that stay apart although the paper is far from stretched are pulled harder, at most so often.
 _STIFFER, _STIFFENINGS = 4.0, 5
@@ -117,7 +116,7 @@ class PairPull(ControlPull):
         away = self._end - self._now
         if not away.any():
             return False
-        rate = HANDLE_RATE * pace
+        rate = JOINT_RATE * pace
         self._now = np.where(np.abs(away) <= rate, self._end, self._now + np.clip(away, -rate, rate))
         # The pair may turn on its way: what is left of its gap keeps the direction that it has.
         gap = self._gap(x)
