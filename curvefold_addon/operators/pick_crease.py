@@ -5,8 +5,10 @@ from typing import ClassVar
 import bpy
 from bpy_extras import view3d_utils
 
+from ... import solver
 from .. import live
 from ..bridge import surface_points
+from ..bridge.state import StateError
 from .on_paper import OnPaper
 from .place_handle import view_under
 
@@ -43,7 +45,12 @@ class PickCrease(OnPaper, bpy.types.Operator):
                 mouse = (event.mouse_x - region.x, event.mouse_y - region.y)
                 origin = view3d_utils.region_2d_to_origin_3d(region, view, mouse)
                 direction = view3d_utils.region_2d_to_vector_3d(region, view, mouse)
-                if not pick_along(paper, origin, direction):
+                try:
+                    found = pick_along(paper, origin, direction)
+                except (solver.CurvefoldError, StateError) as error:
+                    self.cancel(context)
+                    return self.refuse(str(error))
+                if not found:
                     self.report({"INFO"}, "There is no paper under the mouse")
                     return {"RUNNING_MODAL"}
                 self.cancel(context)
