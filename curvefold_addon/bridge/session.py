@@ -99,6 +99,7 @@ class Session:
         self.rest = rest
         self.before: Rest | None = None
         self.run = ""
+        self.origin = ""  # the run that this one began at the rest of
         self.version = next(_versions)
         self.failed = False
         self.inputs: Inputs | None = None
@@ -244,7 +245,7 @@ class Session:
         )
         if not (told and self.run == shape.run and np.array_equal(self.positions, shape.positions)):
             self.move_to(shape.positions, None)
-            self.rest, self.run, self.before = shape.rest, shape.run, None
+            self.rest, self.origin, self.run, self.before = shape.rest, "", shape.run, None
             self.version = next(_versions)
         self._written = self.positions
 
@@ -253,7 +254,7 @@ class Session:
             return
         if self.before is None:
             self.before = Rest(self.rest, self.positions, self.measurement)
-        self.rest, self.run, self.iterations = None, "", 0
+        self.rest, self.origin, self.run, self.iterations = None, self.run, "", 0
         if self.failed:
             self._begin_at(self.positions)
 
@@ -290,7 +291,8 @@ class Session:
             state.store_run(mesh, self.run)
         if self.rest is not None:
             state.store_rest(mesh, self.rest)
-            _ends[self.run] = (self.source, Rest(self.rest, self.positions, self.measurement))
+            rest = Rest(self.rest, self.positions, self.measurement)
+            _ends[self.run] = _End(self.source, self.origin, rest)
             while len(_ends) > _KEPT_ENDS:
                 del _ends[next(iter(_ends))]
 
@@ -307,17 +309,34 @@ class Session:
     def take_up(self, inputs: Inputs) -> None:
         """After undo and redo: where this motion has ended before, asked the same, the paper is there at once.
 
-        An undo step is written when the hand lets go, in mid-motion; what the user saw is what came after.
+        An undo step is written when the hand lets go, in mid-motion; what the user saw is what came after. Where
+        nothing of a quick motion was shown by then, both steps have the same mesh, and Blender leaves the present
+        one as it is: then the paper goes where it has been when it was last asked the same.
         """
-        if self.rest is not None or self.run not in _ends:
+        numbers, unit = inputs.numbers(), self.net.frame.unit
+        if self.rest is not None and same(self.rest, numbers, unit):
             return
-        source, end = _ends[self.run]
-        if source == self.source and same(end.numbers, inputs.numbers(), self.net.frame.unit):
-            self.move_to(end.positions, end)
+        own = [_ends[self.run]] if self.rest is None and self.run in _ends else []
+        next_ones = [end for end in reversed(_ends.values()) if end.origin == self.run]
+        for end in (*own, *next_ones, *reversed(_ends.values())):
+            if end.source == self.source and same(end.rest.numbers, numbers, unit):
+                if self.rest is not None:
+                    self.origin, self.run = self.run, ""  # a motion of its own
+                self.move_to(end.rest.positions, end.rest)
+                return
 
 
-#: Where motions ended, by name; the newest last.
-_ends: dict[str, tuple[state.Source, Rest]] = {}
+@dataclass(frozen=True, eq=False)
+class _End:
+    """Where a motion ended. origin: the run at whose rest it began; empty when that is not known."""
+
+    source: state.Source
+    origin: str
+    rest: Rest
+
+
+#: Where motions ended, by their runs; the newest last.
+_ends: dict[str, _End] = {}
 
 
 def stored_session(shape: state.StoredShape) -> Session:

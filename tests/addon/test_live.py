@@ -395,6 +395,31 @@ def test_an_undo_step_of_mid_motion_leads_to_what_was_seen(held, live):
     assert shape(bpy.data.objects[name].data) == seen
 
 
+def test_an_undo_step_from_before_the_motion_was_shown_leads_to_what_was_seen(held, live):
+    """A slow computer shows nothing of a quick drag before the hand lets go."""
+    paper, empty = held
+    name = paper.name
+    before = shape(paper.data)
+    bpy.ops.ed.undo_push(message="before")
+    empty.location.z += 0.004
+    bpy.ops.ed.undo_push(message="drag")
+    # On its way the paper passed somewhere else, so that going there again ends in other bits.
+    way = empty.location.copy()
+    empty.location.x += 0.005
+    bpy.context.view_layer.update()
+    for _ in range(4):
+        live.tick(0.05, True)
+    empty.location = way
+    bpy.context.view_layer.update()
+    tick_until_rest(live)
+    seen = shape(paper.data)
+    for step, expected in ((bpy.ops.ed.undo, before), (bpy.ops.ed.redo, seen), (bpy.ops.ed.undo, before)):
+        step()
+        bpy.context.view_layer.update()
+        tick_until_rest(live)
+        assert shape(bpy.data.objects[name].data) == expected
+
+
 def test_undo_in_mid_motion_is_safe(held, live):
     paper, empty = held
     name, before = paper.name, shape(paper.data)
