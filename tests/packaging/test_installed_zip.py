@@ -49,8 +49,13 @@ def test_contents(built: Path) -> None:
     tops = {name.partition("/")[0] for name in names}
     assert tops <= {
         "__init__.py", "blender_manifest.toml", "curvefold_addon", "solver", "wheels",
-        "LICENSE", "README.md", "CHANGELOG.md",
+        "LICENSE", "README.md", "CHANGELOG.md", "sample_patterns",
     }  # fmt: skip
+    # Of the samples, what the menu shows and opens.
+    samples = {name for name in names if name.startswith("sample_patterns/") and not name.endswith("/")}
+    drawings = {name for name in samples if name.endswith(".svg")}
+    assert len(drawings) >= 16
+    assert samples == drawings | {f"sample_patterns/previews/{Path(name).stem}.png" for name in drawings}
     assert {"__init__.py", "blender_manifest.toml", "curvefold_addon", "solver", "wheels", "LICENSE"} <= tops
     wheels = [name for name in names if name.endswith(".whl")]
     assert not [name for name in wheels if "numpy" in name]
