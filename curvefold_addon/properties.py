@@ -20,7 +20,7 @@ from bpy.props import (
 )
 
 from . import control_properties, live
-from .control_properties import CreaseSettings, JointSettings, WeightSettings
+from .control_properties import SIDES, CreaseSettings, JointSettings, WeightSettings, wake
 
 ROLES = (
     ("NONE", "Neither", "No part of a drawing"),
@@ -29,16 +29,9 @@ ROLES = (
 )
 #: The letters are FOLD's.
 ASSIGNMENTS = (
-    ("U", "Free", "The paper chooses the side"),
-    ("V", "Valley", "Folds towards the front"),
-    ("M", "Mountain", "Folds towards the back"),
+    *SIDES,
     ("F", "Flat", "Drawn, but not folded"),
 )
-
-
-def _wake(settings: bpy.types.bpy_struct, context: bpy.types.Context) -> None:
-    """A value has changed: the paper moves."""
-    live.wake(settings.id_data)
 
 
 def _rebuild(settings: bpy.types.bpy_struct, context: bpy.types.Context) -> None:
@@ -76,16 +69,16 @@ class HandleSettings(bpy.types.PropertyGroup):
         size=3,
         subtype="XYZ",
         unit="LENGTH",
-        update=_wake,
+        update=wake,
     )
-    enabled: BoolProperty(name="Enabled", description="Whether the handle acts", default=True, update=_wake)
+    enabled: BoolProperty(name="Enabled", description="Whether the handle acts", default=True, update=wake)
     axes: BoolVectorProperty(
         name="Axes",
         description="The paper's own axes along which the handle acts; it is free along the others",
         size=3,
         default=(True, True, True),
         subtype="XYZ",
-        update=_wake,
+        update=wake,
     )
     strength: FloatProperty(
         name="Strength",
@@ -94,7 +87,7 @@ class HandleSettings(bpy.types.PropertyGroup):
         min=0.01,
         soft_max=10.0,
         max=100.0,
-        update=_wake,
+        update=wake,
     )
 
 
@@ -115,7 +108,7 @@ class PaperSettings(bpy.types.PropertyGroup):
         update=_rebuild,
     )
     live: BoolProperty(
-        name="Live", description="The paper follows its handles and its drawing", default=True, update=_wake
+        name="Live", description="The paper follows its handles and its drawing", default=True, update=wake
     )
     fold: FloatProperty(
         name="Fold",
@@ -125,7 +118,7 @@ class PaperSettings(bpy.types.PropertyGroup):
         default=0.0,
         min=0.0,
         max=100.0,
-        update=_wake,
+        update=wake,
     )
     angle: FloatProperty(
         name="Full Angle",
@@ -134,7 +127,7 @@ class PaperSettings(bpy.types.PropertyGroup):
         default=radians(90.0),
         min=0.0,
         max=pi,
-        update=_wake,
+        update=wake,
     )
     handles: CollectionProperty(type=HandleSettings)
     active_handle: IntProperty(name="Active Handle", default=0, min=0)
@@ -145,7 +138,7 @@ class PaperSettings(bpy.types.PropertyGroup):
         name="Mountains and Valleys of the Drawing",
         description="Creases that have no side of their own here are held to that of the drawing",
         default=True,
-        update=_wake,
+        update=wake,
     )
     joints: CollectionProperty(type=JointSettings)
     active_joint: IntProperty(name="Active Joint", default=0, min=0)

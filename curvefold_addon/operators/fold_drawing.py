@@ -9,6 +9,7 @@ from bpy.props import FloatProperty, IntProperty, StringProperty
 from ... import solver
 from .. import paper_material
 from ..bridge import mesh, papers
+from ..drawing_context import select_only
 
 
 class FoldDrawing(bpy.types.Operator):
@@ -55,10 +56,7 @@ class FoldDrawing(bpy.types.Operator):
             return {"CANCELLED"}
         paper = mesh.add_paper(result, context.collection, paper_material.paper_material())
         papers.keep(paper.data, result)
-        for other in context.selected_objects:
-            other.select_set(False)
-        paper.select_set(True)
-        context.view_layer.objects.active = paper
+        select_only(context, paper)
         self.report({"INFO"} if result.status.ok else {"WARNING"}, result.status.sentence)
         return {"FINISHED"}
 
