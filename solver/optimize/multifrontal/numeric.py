@@ -18,7 +18,7 @@ import numpy as np
 
 from ...arrays import FloatArray, IntArray
 from ...errors import NotPositiveDefiniteError
-from .lapack import Routines
+from .lapack import Routines, argument
 from .symbolic import Front, Symbolic, front_flops
 
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
@@ -33,25 +33,25 @@ _ITEM = 8  # bytes of a double, and of an integer here
 
 
 class _Scalars:
-    """Addresses of constants for Fortran calls, kept alive as long as the calls are."""
+    """Constants as arguments of Fortran calls, each made once; an argument keeps its constant alive."""
 
     def __init__(self) -> None:
         self._kept: dict[tuple[str, Any], Any] = {}
 
-    def integer(self, value: int) -> int:
-        return self._address("i", value, ctypes.c_int64)
+    def integer(self, value: int) -> Any:
+        return self._argument("i", value, ctypes.c_int64)
 
-    def real(self, value: float) -> int:
-        return self._address("d", value, ctypes.c_double)
+    def real(self, value: float) -> Any:
+        return self._argument("d", value, ctypes.c_double)
 
-    def letter(self, value: str) -> int:
-        return self._address("c", value.encode(), ctypes.c_char)
+    def letter(self, value: str) -> Any:
+        return self._argument("c", value.encode(), ctypes.c_char)
 
-    def _address(self, kind: str, value: Any, make: Callable[[Any], Any]) -> int:
+    def _argument(self, kind: str, value: Any, make: Callable[[Any], Any]) -> Any:
         key = kind, value
         if key not in self._kept:
-            self._kept[key] = make(value)
-        return ctypes.addressof(self._kept[key])
+            self._kept[key] = ctypes.byref(make(value))
+        return self._kept[key]
 
 
 class Factorization:
@@ -153,7 +153,7 @@ class Factorization:
         base = int(self._infos.ctypes.data)
         for k, (calls, index) in enumerate(blocks):
             function, arguments = calls[index]
-            calls[index] = function, (*arguments[:-1], base + k * _ITEM)
+            calls[index] = function, (*arguments[:-1], argument(base + k * _ITEM))
         sides = [(range(first), range(first, second)), *self._symbolic.top_stages]
         self._factor_stages = [(self._calls_of(left), self._calls_of(right)) for left, right in sides]
 
@@ -166,6 +166,11 @@ class Factorization:
 
     def _panel_address(self, i: int) -> int:
         return int(self._panels.ctypes.data) + _ITEM * int(self._symbolic.panel_starts[i])
+
+    def _panel_blocks(self, i: int) -> tuple[Any, Any]:
+        """The panel's pivot block and its border rows, as arguments."""
+        at = self._panel_address(i)
+        return argument(at), argument(at + _ITEM * self._symbolic.fronts[i].pivot_size)
 
     def _update_address(self, i: int) -> int:
         return int(self._updates.ctypes.data) + _ITEM * int(self._update_starts[i])
@@ -211,11 +216,11 @@ class Factorization:
             return np.add, (target, block, target)
         s, one = self._scalars, self._scalars.real(1.0)
         size = s.integer(block.shape[1]), s.integer(block.shape[0])
-        source = block.ctypes.data, s.integer(block.strides[0] // _ITEM)
+        source = argument(block.ctypes.data), s.integer(block.strides[0] // _ITEM)
         return self._routines.geadd, (
             *size,
             *(one, *source),
-            *(one, target.ctypes.data, s.integer(target.strides[0] // _ITEM)),
+            *(one, argument(target.ctypes.data), s.integer(target.strides[0] // _ITEM)),
         )
 
     def _pivot_calls(self, at: int, size: int, ld: int, calls: list[Call], blocks: list[Any]) -> None:
@@ -223,35 +228,36 @@ class Factorization:
         routines, s = self._routines, self._scalars
         lower, height, one, minus = s.letter("L"), s.integer(ld), s.real(1.0), s.real(-1.0)
         left, right, plain, transposed = s.letter("L"), s.letter("R"), s.letter("N"), s.letter("T")
+        block = argument(at)
         if size <= DIRECT_PIVOTS:
             n = s.integer(size)
             blocks.append([calls, len(calls)])
-            calls.append((routines.potrf, (lower, n, at, height, 0)))
+            calls.append((routines.potrf, (lower, n, block, height, None)))
             blocks.append([calls, len(calls)])
-            calls.append((routines.trtri, (lower, plain, n, at, height, 0)))
+            calls.append((routines.trtri, (lower, plain, n, block, height, None)))
             return
         upper_size = size // 2
         lower_size = size - upper_size
         m, n = s.integer(lower_size), s.integer(upper_size)
-        below = at + _ITEM * upper_size
-        corner = below + _ITEM * upper_size * ld
+        corner_at = at + _ITEM * upper_size * (1 + ld)
+        below, corner = argument(at + _ITEM * upper_size), argument(corner_at)
         self._pivot_calls(at, upper_size, ld, calls, blocks)
-        calls.append((routines.trmm, (right, lower, transposed, plain, m, n, one, at, height, below, height)))
+        calls.append((routines.trmm, (right, lower, transposed, plain, m, n, one, block, height, below, height)))
         calls.append((routines.syrk, (lower, plain, m, n, minus, below, height, one, corner, height)))
-        self._pivot_calls(corner, lower_size, ld, calls, blocks)
+        self._pivot_calls(corner_at, lower_size, ld, calls, blocks)
         calls.append((routines.trmm, (left, lower, plain, plain, m, n, minus, corner, height, below, height)))
-        calls.append((routines.trmm, (right, lower, plain, plain, m, n, one, at, height, below, height)))
+        calls.append((routines.trmm, (right, lower, plain, plain, m, n, one, block, height, below, height)))
 
     def _border_calls(self, i: int, calls: list[Call]) -> None:
         routines, s = self._routines, self._scalars
         front = self._symbolic.fronts[i]
-        at, height = self._panel_address(i), s.integer(self._height(front))
-        below = at + _ITEM * front.pivot_size
+        height = s.integer(self._height(front))
+        block, below = self._panel_blocks(i)
         p, b = s.integer(front.pivot_size), s.integer(front.border_size)
         lower, right, plain, transposed = s.letter("L"), s.letter("R"), s.letter("N"), s.letter("T")
         one, minus, zero = s.real(1.0), s.real(-1.0), s.real(0.0)
-        calls.append((routines.trmm, (right, lower, transposed, plain, b, p, one, at, height, below, height)))
-        update = self._update_address(i)
+        calls.append((routines.trmm, (right, lower, transposed, plain, b, p, one, block, height, below, height)))
+        update = argument(self._update_address(i))
         calls.append((routines.syrk, (lower, plain, b, p, minus, below, height, zero, update, b)))
 
     def _substitution_calls(self, i: int, forward: list[Call], backward: list[Call]) -> None:
@@ -259,14 +265,14 @@ class Factorization:
         routines, s = self._routines, self._scalars
         front = self._symbolic.fronts[i]
         vector, border = self._vector, self._border[: front.border_size]
-        x, t = int(vector.ctypes.data) + _ITEM * 3 * front.start, int(border.ctypes.data)
-        at, height = self._panel_address(i), s.integer(self._height(front))
-        below = at + _ITEM * front.pivot_size
+        x, t = argument(vector.ctypes.data + _ITEM * 3 * front.start), argument(border.ctypes.data)
+        height = s.integer(self._height(front))
+        block, below = self._panel_blocks(i)
         p, b, step = s.integer(front.pivot_size), s.integer(front.border_size), s.integer(1)
         lower, plain, transposed = s.letter("L"), s.letter("N"), s.letter("T")
         one, minus = s.real(1.0), s.real(-1.0)
-        forward.append((routines.trmv, (lower, plain, plain, p, at, height, x, step)))
-        backward.append((routines.trmv, (lower, transposed, plain, p, at, height, x, step)))
+        forward.append((routines.trmv, (lower, plain, plain, p, block, height, x, step)))
+        backward.append((routines.trmv, (lower, transposed, plain, p, block, height, x, step)))
         if front.border_size:
             where = (3 * front.border[:, None] + np.arange(3)).ravel()
             gather = (vector.take, (where, None, border, "clip"))
