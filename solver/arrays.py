@@ -1,4 +1,4 @@
-"""Read-only arrays with checked shapes, for frozen dataclasses."""
+"""Read-only arrays with checked shapes, for frozen dataclasses; and sums that are the same on every machine."""
 
 from __future__ import annotations
 
@@ -10,6 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
+
+
+def dot(first: FloatArray, second: FloatArray) -> float:
+    """The sum of products of two vectors (n,).
+
+    Not by BLAS: from ten thousand entries on OpenBLAS shares them out to its threads, which spin with Python held
+    when the machine is busy, and the sum depends on how many they are.
+    """
+    return float(np.einsum("n,n->", first, second))
 
 
 def frozen_array(values: ArrayLike, dtype: Any, shape: tuple[int | None, ...], name: str) -> NDArray[Any]:

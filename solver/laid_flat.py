@@ -33,4 +33,4 @@ def off_plane(x: FloatArray) -> float:
     """How thick x (V,3) is: its extent along the normal of the plane nearest to it."""
     centred = x - x.mean(axis=0)
     normal = np.linalg.svd(centred.T @ centred)[0][:, 2]
-    return float(np.ptp(centred @ normal))
+    return float(np.ptp(np.einsum("nc,c->n", centred, normal)))

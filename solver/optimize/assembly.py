@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import FloatArray, IntArray, dot
 from ..errors import NotPositiveDefiniteError
 from .linear_system import LinearSystem
 from .term import EdgeTerm, LinearTerm, ResidualTerm, gather
@@ -180,9 +180,9 @@ class Problem:
         self, x: FloatArray, objectives: dict[str, FloatArray], constraints: dict[str, FloatArray]
     ) -> Evaluation:
         linear = self._matrix @ x - self._targets
-        total = float(self._weights @ np.einsum("nc,nc->n", linear, linear))
+        total = dot(self._weights, np.einsum("nc,nc->n", linear, linear))
         for name, residual in objectives.items():
-            total += float(self.nonlinear[name].weight @ (residual * residual).sum(0))
+            total += dot(self.nonlinear[name].weight, (residual * residual).sum(0))
         rows = [residual.ravel() for residual in constraints.values()]
         return Evaluation(objectives, constraints, linear, total, np.concatenate(rows) if rows else np.zeros(0))
 
@@ -263,12 +263,12 @@ class Problem:
     def objective_by_term(self, evaluation: Evaluation) -> dict[str, float]:
         """The objective's parts by the names of the terms."""
         parts = {
-            name: float(self.nonlinear[name].weight @ (residual * residual).sum(0))
+            name: dot(self.nonlinear[name].weight, (residual * residual).sum(0))
             for name, residual in evaluation.objectives.items()
         }
         for name, (a, b) in self._linear_rows.items():
             rows = evaluation.linear[a:b]
-            parts[name] = float(self._weights[a:b] @ (rows * rows).sum(1))
+            parts[name] = dot(self._weights[a:b], (rows * rows).sum(1))
         return parts
 
 

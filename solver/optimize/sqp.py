@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, dot
 from ..errors import NotPositiveDefiniteError
 from .assembly import Evaluation, Problem
 
@@ -74,7 +74,7 @@ def sqp_step(problem: Problem, state: SqpState, eps: float) -> tuple[SqpState, S
     """
 
     def merit(evaluation: Evaluation) -> float:
-        return evaluation.objective + float(evaluation.constraint @ evaluation.constraint) / (2 * eps)
+        return evaluation.objective + dot(evaluation.constraint, evaluation.constraint) / (2 * eps)
 
     clock = [time.perf_counter()]
     x, momentum = state.x, state.momentum
@@ -97,7 +97,7 @@ def sqp_step(problem: Problem, state: SqpState, eps: float) -> tuple[SqpState, S
         raise NotPositiveDefiniteError("the linear system gave a step that is not finite")
     clock.append(time.perf_counter())
     move = step.reshape(-1, 3)
-    slope = float(gradient @ step)
+    slope = dot(gradient, step)
     start = merit(model.evaluation)
     length, backtracks, accepted = 1.0, 0, model.evaluation
     while True:
@@ -109,7 +109,7 @@ def sqp_step(problem: Problem, state: SqpState, eps: float) -> tuple[SqpState, S
             length = 0.0
             break
         length, backtracks = 0.5 * length, backtracks + 1
-    if float(gradient @ velocity.ravel()) > 0.0:
+    if dot(gradient, velocity.ravel()) > 0.0:
         # The last move went uphill: momentum starts anew (O'Donoghue and Candès 2015, gradient scheme).
         momentum = 0
     damping = state.damping * (_RAISE if length < 1.0 else _LOWER)
@@ -145,12 +145,12 @@ def projection_step(problem: Problem, x: FloatArray, eps: float) -> tuple[FloatA
     constraint = model.evaluation.constraint
     problem.factorize(model)
     step = problem.system.solve(-problem.transposed(model.jacobians, constraint / eps)).reshape(-1, 3)
-    start = float(constraint @ constraint)
+    start = dot(constraint, constraint)
     length = 1.0
     for _ in range(_MAX_BACKTRACKS):
         trial = x + length * step
         c = problem.evaluate(trial).constraint
-        if float(c @ c) < start:
+        if dot(c, c) < start:
             return trial, float(np.abs(c).max(initial=0.0))
         length *= 0.5
     return x, float(np.abs(constraint).max(initial=0.0))
