@@ -5,17 +5,21 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from random import Random
 from typing import Any
 
+import numpy as np
+
 import solver
-from solver.description import FoldDescription
 from solver.pattern.reading import READERS
 
 FOLDER = Path(__file__).resolve().parents[1] / "sample_patterns"
 #: Quads along the longer side of the net that is made of every drawing that can be read.
 RESOLUTION = 6
+#: The drawing that fold descriptions are tried on: two creases that cross in the middle of a square of 100.
+TRIED_ON = FOLDER / "crossing.svg"
 
 _NUMBERS = [
     "0", "-0", "1", "-1", "50", "1e3", "1e-9", "1e308", "-1e308", "1e999", "nan", "inf", "-inf", ".", "-", "1e",
@@ -117,6 +121,18 @@ def made_svg(rng: Random) -> bytes:
             f"</svg>").encode(rng.choice(["utf-8", "utf-8", "utf-8", "utf-16", "latin-1"]), "replace")  # fmt: skip
 
 
+def changed_svg(rng: Random, data: bytes) -> bytes:
+    """A drawing with an element or an attribute put in, or bytes spoilt."""
+    if rng.random() < 0.3 or b">" not in data:
+        return spoilt(rng, data)
+    ends = [k for k, byte in enumerate(data) if byte == ord(">")]
+    at = rng.choice(ends)
+    if rng.random() < 0.5:
+        return data[: at + 1] + _element(rng, 2).encode("utf-8", "replace") + data[at + 1 :]
+    at -= data[at - 1] == ord("/")
+    return data[:at] + b" " + _attribute(rng).encode("utf-8", "replace") + data[at:]
+
+
 def spoilt(rng: Random, data: bytes) -> bytes:
     """A true file with bytes changed, dropped, repeated or cut off."""
     array = bytearray(data)
@@ -137,8 +153,23 @@ def spoilt(rng: Random, data: bytes) -> bytes:
     return bytes(array)
 
 
+#: One control of every kind, and more, for TRIED_ON.
+CONTROLS: list[dict[str, Any]] = [
+    {"kind": "amount", "crease": 1, "part": 0.5},
+    {"kind": "side", "crease": 2, "side": "M"},
+    {"kind": "angle", "crease": 1, "degrees": 40.0, "signed": True},
+    {"kind": "angle", "at": [50.0, 20.0], "degrees": 30.0, "strength": 2.0},
+    {"kind": "pair", "first": [10.0, 10.0], "second": [90.0, 10.0], "distance": 50.0},
+    {"kind": "pair", "first": [10.0, 10.0], "second": [90.0, 10.0], "axes": [True, False, True]},
+    {"kind": "keep", "at": [50.0, 5.0], "shape": "rigid"},
+    {"kind": "curve", "crease": 1, "curvature_times": 1.5, "torsion_plus": 0.01, "progress": 0.5},
+    {"kind": "curve", "crease": 2, "points": [[0.0, 0.0, 0.0], [50.0, 50.0, 10.0], [90.0, 90.0, 0.0]]},
+    {"kind": "glue", "first": [[0.0, 10.0], [0.0, 40.0]], "second": [[100.0, 10.0], [100.0, 40.0]]},
+]
+
+
 def _value(rng: Random, depth: int = 0) -> Any:
-    simple = [0, 1, -1, 0.5, 1e308, 10**40, float("nan"), float("inf"), True, None, "", "60", "V", [], {}]
+    simple = [0, 1, -1, 0.5, 1e308, 10**40, 10**400, float("nan"), float("inf"), True, None, "", "60", "V", [], {}]
     if depth > 3 or rng.random() < 0.6:
         return rng.choice(simple)
     if rng.random() < 0.5:
@@ -156,12 +187,39 @@ def made_handles(rng: Random) -> bytes:
     return spoilt(rng, text.encode()) if rng.random() < 0.4 else text.encode()
 
 
+def changed_json(rng: Random, data: Any) -> Any:
+    """A JSON value with something in it, at any depth, changed, doubled, renamed or taken away."""
+    if not isinstance(data, list | dict) or not data or rng.random() < 0.15:
+        return _value(rng)
+    copy = list(data) if isinstance(data, list) else dict(data)
+    key = rng.randrange(len(copy)) if isinstance(copy, list) else rng.choice(sorted(copy))
+    kind = rng.randrange(8)
+    if kind == 0:
+        del copy[key]
+    elif kind == 1 and isinstance(copy, list):
+        copy.insert(key, copy[key])
+    elif kind == 1 and isinstance(copy, dict):
+        copy[rng.choice([*sorted(copy), "unknown"])] = copy.pop(key)
+    else:
+        copy[key] = changed_json(rng, copy[key])
+    return copy
+
+
+def true_description(rng: Random) -> dict[str, Any]:
+    """A description of a fold of TRIED_ON."""
+    data = solver.FoldDescription(resolution=RESOLUTION, max_iterations=2).to_json()
+    data["controls"] = rng.sample(CONTROLS, rng.randrange(4))
+    if rng.random() < 0.5:
+        data["handles"] = [{"at": [10.0, 10.0], "target": [20.0, 20.0, 9.0], "strength": 2.0}]
+    return data
+
+
 def made_description(rng: Random) -> bytes:
-    data = FoldDescription().to_json()
+    data: Any = true_description(rng)
     for _ in range(rng.randrange(1, 4)):
-        key = rng.choice([*data, "unknown", "controls", "handles"])
-        data[key] = _value(rng)
-    return json.dumps(data).encode()
+        data = changed_json(rng, data)
+    text = json.dumps(data).encode()
+    return spoilt(rng, text) if rng.random() < 0.1 else text
 
 
 # --- what is done with it -------------------------------------------------------------------------------
@@ -197,7 +255,24 @@ def _read_handles(data: bytes, folder: Path) -> None:
 
 
 def _read_description(data: bytes, folder: Path) -> None:
-    FoldDescription.from_json(json.loads(data))
+    path = folder / "description.json"
+    path.write_bytes(data)
+    description = solver.read_description(path)
+    net = _net()
+    model = solver.FoldModel(net, weights=description.weights)
+    if description.assignments == "bind":
+        model.set_assignments(["M", "V"])
+    model.set_controls(description.controls)
+    model.set_handles(description.handles)
+    model.set_fold_angle(description.angle)
+    model.advance(1)
+    if not np.isfinite(model.positions).all():
+        raise AssertionError("the numbers ran away")
+
+
+@cache
+def _net() -> solver.PiecewiseDog:
+    return solver.build_net(solver.read_pattern(TRIED_ON), RESOLUTION)
 
 
 #: Name of a door -> what makes input for it, and what lets the input in.
@@ -215,7 +290,7 @@ def attempt(door: str, data: bytes, folder: Path) -> None:
     except solver.CurvefoldError as error:
         if len(str(error).splitlines()) != 1:
             raise AssertionError(f"more than one line: {error}") from error
-    strange = [path.name for path in folder.iterdir() if path.stem not in ("drawing", "handles")]
+    strange = [path.name for path in folder.iterdir() if path.stem not in ("drawing", "handles", "description")]
     if strange:
         raise AssertionError(f"wrote {strange}")
 

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-from .controls.control import Control
+from .controls.control import Control, is_number
 from .controls.registry import control_to_json, controls_from_json
 from .errors import DescriptionError, HandleError
 
@@ -40,7 +40,7 @@ class Handle:
         for name, values, count in (("at", self.at, 2), ("target", self.target, 3)):
             try:
                 numbers = tuple(float(v) for v in values)
-            except (TypeError, ValueError):
+            except (TypeError, ValueError, OverflowError):
                 raise HandleError(f"{name!r} must be {count} numbers", element="handle") from None
             if len(numbers) != count or not all(math.isfinite(v) for v in numbers):
                 raise HandleError(f"{name!r} must be {count} finite numbers", element="handle")
@@ -50,9 +50,9 @@ class Handle:
         object.__setattr__(self, "axes", tuple(self.axes))
         if not any(self.axes):
             raise HandleError("'axes' leaves no axis to pull along", element="handle")
-        strength = self.strength
-        if isinstance(strength, bool) or not isinstance(strength, int | float) or not 0 < strength < math.inf:
+        if not is_number(self.strength) or self.strength <= 0:
             raise HandleError("'strength' must be a positive number", element="handle")
+        object.__setattr__(self, "strength", float(self.strength))
 
 
 @dataclass(frozen=True)
@@ -76,8 +76,9 @@ class Weights:
     def __post_init__(self) -> None:
         for entry in fields(self):
             value = getattr(self, entry.name)
-            if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0):
+            if not (is_number(value) and value >= 0):
                 raise DescriptionError("a weight must be a number that is not negative", element=entry.name)
+            object.__setattr__(self, entry.name, float(value))
 
 
 @dataclass(frozen=True)
@@ -97,9 +98,7 @@ class FoldDescription:
     controls: tuple[Control, ...] = ()
 
     def __post_init__(self) -> None:
-        if self.angle is not None and not (
-            isinstance(self.angle, int | float) and math.isfinite(self.angle) and 0 <= self.angle <= 180
-        ):
+        if self.angle is not None and not (is_number(self.angle) and 0 <= self.angle <= 180):
             raise DescriptionError("the fold angle must lie between 0 and 180 degrees", element="angle")
         for name, least, most in (("resolution", *RESOLUTIONS), ("max_iterations", 1, MAX_ITERATIONS)):
             value = getattr(self, name)

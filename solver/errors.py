@@ -43,7 +43,9 @@ class CurvefoldError(Exception):
 
     def __str__(self) -> str:
         where = str(self.where)
-        return f"{where}: {self.message}" if where else self.message
+        text = f"{where}: {self.message}" if where else self.message
+        # Names of files, elements and settings may hold line breaks of all kinds.
+        return " ".join(text.splitlines())
 
     def in_file(self, file: str) -> CurvefoldError:
         """The same error, of the same type, naming ``file``."""

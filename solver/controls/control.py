@@ -47,9 +47,19 @@ def read_fields(cls: type[Control], entry: dict[str, Any]) -> Control:
     return cls(**{name: value for name, value in entry.items() if name != "kind"})
 
 
+def is_number(value: Any) -> bool:
+    """Whether it is a finite number, not too large for a float."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # JSON may hold whole numbers of any length
+        return False
+
+
 def number(name: str, value: Any, least: float = -math.inf, most: float = math.inf) -> float:
     """A finite number within bounds."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if not is_number(value):
         raise DescriptionError(f"{name!r} must be a number")
     if not least <= value <= most:
         bounds = f"from {least:g} to {most:g}" if math.isfinite(most) else f"of at least {least:g}"

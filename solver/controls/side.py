@@ -40,7 +40,7 @@ class Side(Control):
 
     def __post_init__(self) -> None:
         crease_name(self.crease)
-        if self.side not in SIGNS:
+        if not isinstance(self.side, str) or self.side not in SIGNS:
             raise DescriptionError("'side' must be 'M' or 'V'")
 
 

@@ -99,6 +99,8 @@ def laid_onto(points: FloatArray, places: FloatArray) -> FloatArray:
 def resampled(points: FloatArray, at: FloatArray) -> FloatArray:
     """Points (n,3) at arc lengths ``at`` (n,) along a polyline (m,3), by a cubic through it."""
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    new = np.concatenate([[True], np.diff(length) > 0])  # a point that is given twice counts once
+    points, length = points[new], length[new]
     if len(points) < 3:
         return np.column_stack([np.interp(at, length, points[:, c]) for c in range(3)])
     return np.asarray(CubicSpline(length, points)(at))

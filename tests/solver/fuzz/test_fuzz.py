@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import time
 from pathlib import Path
 from random import Random
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import solver
-from benchmarks.fuzz_inputs import DOORS, attempt, made_svg, scratch
+from benchmarks.fuzz_inputs import DOORS, RESOLUTION, TRIED_ON, attempt, made_svg, scratch
 from solver.description import parse_handles
 
 #: Inputs for each door; ``python -m benchmarks.fuzz`` makes as many as one likes.
@@ -38,8 +38,6 @@ def test_spoilt_files_are_refused_or_read(door: str, rng: Random) -> None:
 @FEW
 @given(data=st.binary(max_size=300))
 def test_any_bytes_are_refused(door: str, data: bytes) -> None:
-    if door == "description":
-        data = json.dumps(data.decode("latin-1")).encode()
     with scratch() as folder:
         attempt(door, data, Path(folder))
 
@@ -50,6 +48,54 @@ def test_any_json_is_a_description_or_handles_or_refused(data: Any) -> None:
     for read in (solver.FoldDescription.from_json, parse_handles):
         with contextlib.suppress(solver.CurvefoldError):
             read(data)
+
+
+HUGE = 10**400
+SIDE = {"kind": "side", "crease": 1, "side": ["M"]}
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"handles": [{"at": [HUGE, 0], "target": [0, 0, 0]}]},
+        {"handles": [{"at": [0, 0], "target": [0, 0, 0], "strength": HUGE}]},
+        {"angle": HUGE},
+        {"weights": {"bending": HUGE}},
+        {"controls": [{"kind": "amount", "crease": 1, "part": HUGE}]},
+        {"controls": [SIDE]},
+        {"two\r\nlines": 1},
+    ],
+)
+def test_what_breeding_has_found_is_refused(data: Any) -> None:
+    """Whole numbers that no float holds, a list for a word, a name of two lines."""
+    with pytest.raises(solver.CurvefoldError) as refused:
+        solver.FoldDescription.from_json(data)
+    assert len(str(refused.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize("weight", [10**40, 1])
+def test_weights_and_strengths_are_floats(weight: int) -> None:
+    """Whole numbers beyond 64 bits make arrays of objects."""
+    handle = solver.Handle((0, 0), (0, 0, 0), strength=weight)
+    assert type(handle.strength) is type(solver.Weights(bending=weight).bending) is float
+
+
+def test_a_curve_beyond_all_bounds_is_refused() -> None:
+    model = solver.FoldModel(solver.build_net(solver.read_pattern(TRIED_ON), RESOLUTION))
+    with pytest.raises(solver.DescriptionError, match="beyond all bounds"):
+        model.set_controls([solver.Curve(crease=1, curvature_times=1.5, torsion_plus=1e308)])
+
+
+def test_a_curve_with_a_point_given_twice_is_a_curve() -> None:
+    net = solver.build_net(solver.read_pattern(TRIED_ON), RESOLUTION)
+    once = [(0.0, 60.0, 0.0), (80.0, 90.0, 20.0), (160.0, 60.0, 0.0)]
+    shapes = []
+    for points in (once, [once[0], once[0], once[1], once[2], once[2]]):
+        model = solver.FoldModel(net)
+        model.set_controls([solver.Curve(crease=1, points=tuple(points))])
+        model.advance(3)
+        shapes.append(model.positions)
+    assert np.array_equal(*shapes)
 
 
 def test_the_generator_reaches_the_net() -> None:
