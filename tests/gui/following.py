@@ -53,6 +53,51 @@ def following(events: list[list[Any]]) -> Following:
     )
 
 
+@dataclass(frozen=True)
+class Spending:
+    """Where the time goes while the empty moves, milliseconds in a frame: the follower's ticks, drawing the 3D
+    view, and all else that Blender's own thread does or waits for: events, other regions, showing the picture.
+    """
+
+    ticks: float  # in a frame, whether they had something to write or not
+    tick: float
+    draw: float
+    rest: float
+    tick_processor: float  # of Blender's own thread
+    draw_processor: float
+    rest_processor: float
+    other_threads: float  # processor time of all the others: the solver, and who draws without a graphics card
+
+    def __str__(self) -> str:
+        return ", ".join(f"{name} {value:.4g}" for name, value in asdict(self).items())
+
+
+def spending(events: list[list[Any]]) -> Spending:
+    """From events with processor times: [seconds, what, two places, Blender's own thread's, all threads']."""
+    moves = [k for k, event in enumerate(events) if event[1] == "hook"]
+    within = events[moves[0] : moves[-1] + 1]
+    clocks = 1000.0 * np.array([[event[0], event[4], event[5]] for event in within])
+    kinds = [event[1] for event in within]
+    tick, draw = (_between(kinds, clocks, *pair) for pair in (("tick", "ticked"), ("draw", "frame")))
+    whole = clocks[-1] - clocks[0]
+    rest = whole - tick - draw
+    frames = kinds.count("frame")
+    ticks = kinds.count("tick") / frames
+    parts = [tick[0], draw[0], rest[0], tick[1], draw[1], rest[1], whole[2] - whole[1]]
+    return Spending(ticks, *(float(part) / frames for part in parts))
+
+
+def _between(kinds: list[str], clocks: np.ndarray, begin: str, end: str) -> np.ndarray:
+    """(3,) what the clocks (n,3) have gone on between the beginnings and the ends."""
+    total, begun = np.zeros(3), None
+    for kind, clock in zip(kinds, clocks, strict=True):
+        if kind == begin:
+            begun = clock
+        elif kind == end and begun is not None:
+            total, begun = total + clock - begun, None
+    return total
+
+
 def _catch_up(events: list[list[Any]], end: float) -> float:
     """Seconds."""
     empty, point = (np.array([event[k] for event in events]) for k in (2, 3))

@@ -11,6 +11,7 @@ import os
 import sys
 import time
 import traceback
+from collections.abc import Callable
 from pathlib import Path
 
 import blf
@@ -22,6 +23,8 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Matrix, Vector
 
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
+sys.path.insert(0, str(FOLDER))
+bits = importlib.import_module("bits")
 POLL = 0.1  # seconds
 PACKAGE = "bl_ext.user_default.curvefold.curvefold_addon"
 
@@ -62,16 +65,10 @@ def on_screen(points: list[list[float]]) -> list[list[float] | None]:
     return [None if p is None else [region.x + p.x, height - region.y - p.y] for p in seen]
 
 
-def _positions(mesh: bpy.types.Mesh) -> np.ndarray:
-    flat = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    mesh.attributes["position"].data.foreach_get("vector", flat)
-    return flat.reshape(-1, 3)
-
-
 def _world(thing: bpy.types.Object) -> np.ndarray:
     """Where a mesh's vertices are in the scene, (V, 3)."""
     matrix = np.array(thing.matrix_world)
-    return _positions(thing.data) @ matrix[:3, :3].T + matrix[:3, 3]
+    return bits.shown(thing.data) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 def _live() -> object:
@@ -80,10 +77,11 @@ def _live() -> object:
 
 def _paper_facts(thing: bpy.types.Object) -> dict:
     mesh, settings = thing.data, thing.data.curvefold
-    places = _positions(mesh)
+    places = bits.shown(mesh)
     report = _live().report(mesh)
     return {
         "vertices": len(mesh.vertices),
+        "exact": bits.digest(mesh),
         "hash": hashlib.sha256(places.tobytes()).hexdigest(),
         "height": float(np.ptp(places[:, 2])),
         "finite": bool(np.isfinite(places).all()),
@@ -196,24 +194,34 @@ def prepare(sample: str, resolution: int, points: list[list[float]]) -> None:
     """An empty scene with a sample's paper in view, and handles near points of the sheet, from 0 to 1 each way."""
     area, region, view = _view()
     with bpy.context.temp_override(window=_window(), area=area, region=region):
-        for thing in list(bpy.context.scene.objects):
-            bpy.data.objects.remove(thing)
         view.view_location, view.view_distance = (0.0, 0.0, 0.0), 1.0
-        bpy.ops.curvefold.add_sample(sample=sample)
-        bpy.ops.curvefold.make_paper(resolution=resolution)
-        paper = bpy.context.object
-        places = _positions(paper.data)
-        low, high = places.min(axis=0), places.max(axis=0)
-        bpy.ops.object.mode_set(mode="EDIT")
-        bpy.ops.mesh.select_all(action="DESELECT")
-        bpy.ops.object.mode_set(mode="OBJECT")
-        for point in points:
-            wanted = low[:2] + np.array(point) * (high - low)[:2]
-            nearest = np.argmin(np.linalg.norm(places[:, :2] - wanted, axis=1))
-            paper.data.vertices[int(nearest)].select = True
-        bpy.ops.object.mode_set(mode="EDIT")
-        bpy.ops.curvefold.add_handles(together=False)
+        bits.new_paper(sample, resolution, points)
         bpy.ops.ed.undo_push(message="Prepare")
+
+
+def _in_view(function: Callable[..., object], *arguments: object) -> object:
+    """As an operator that a person calls with the mouse over the 3D view."""
+    area, region, _ = _view()
+    with bpy.context.temp_override(window=_window(), area=area, region=region):
+        return function(*arguments)
+
+
+def waited_for() -> str:
+    return _in_view(bits.waited_for)
+
+
+def at_once(drawing: str) -> str:
+    return _in_view(bits.at_once, drawing)
+
+
+def folding() -> None:
+    """The paper of ``waited_for``, left to fold by itself."""
+    paper = _in_view(bits.new_paper, bits.SAMPLE, bits.RESOLUTION, [])
+    paper.data.curvefold.fold = bits.FOLD
+
+
+def animated() -> str:
+    return _in_view(bits.animated).name
 
 
 def save_automatically(minutes: int) -> None:
@@ -242,7 +250,8 @@ class _Recorder:
         if paper is None or hook is None:
             return
         point = paper.matrix_world @ paper.data.vertices[self.vertex].co
-        self.events.append([time.perf_counter(), kind, list(hook.matrix_world.translation), list(point)])
+        clocks = [time.thread_time(), time.process_time()]
+        self.events.append([time.perf_counter(), kind, list(hook.matrix_world.translation), list(point), *clocks])
 
 
 _recorder = _Recorder()
@@ -253,7 +262,9 @@ def record(paper: str, hook: str) -> None:
 
 
 def recorded() -> dict:
-    """The events since ``record``: [seconds, "hook" | "paper" | "frame", hook's place, its point on the paper]."""
+    """The events since ``record``: [seconds, what, hook's place, its point on the paper, and the processor time of
+    this thread and of all]. What: "hook", "paper", "tick" to "ticked", and "draw" to "frame".
+    """
     _recorder.on = False
     return {"events": _recorder.events}
 
@@ -271,9 +282,29 @@ def _updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
                 _recorder.note("paper")
 
 
+def _draws() -> None:
+    if _recorder.on:
+        _recorder.note("draw")
+
+
 def _drawn() -> None:
     if _recorder.on:
         _recorder.note("frame")
+
+
+def _watch_ticks() -> None:
+    live = _live()
+    tick = live.tick
+
+    def watched(*arguments: object, **options: object) -> bool:
+        if not _recorder.on:
+            return tick(*arguments, **options)
+        _recorder.note("tick")
+        more = tick(*arguments, **options)
+        _recorder.note("ticked")
+        return more
+
+    live.tick = watched
 
 
 _opened = 0
@@ -285,7 +316,10 @@ def _count(*_: object) -> None:
     _opened += 1
 
 
-_COMMANDS = (awake, regions, on_screen, facts, said, lettering, prepare, save_automatically, record, recorded)
+_COMMANDS = (
+    *(awake, regions, on_screen, facts, said, lettering, prepare, save_automatically, record, recorded),
+    *(waited_for, at_once, folding, animated, bits.watch_frames, bits.seen_frames),
+)
 
 
 def _poll() -> float:
@@ -307,5 +341,8 @@ def _poll() -> float:
 
 bpy.app.handlers.depsgraph_update_post.append(_updated)
 bpy.app.handlers.load_post.append(_count)
+bits.watch()
+_watch_ticks()
+bpy.types.SpaceView3D.draw_handler_add(_draws, (), "WINDOW", "PRE_VIEW")
 bpy.types.SpaceView3D.draw_handler_add(_drawn, (), "WINDOW", "POST_PIXEL")
 bpy.app.timers.register(_poll, persistent=True)

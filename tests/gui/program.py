@@ -129,10 +129,14 @@ class Program:
         self.screen.move(((left + right) / 2, (top + bottom) / 2))
         self.understood()
 
-    def processor_seconds(self) -> float:
-        """What Blender has computed so far, all threads."""
-        fields = Path(f"/proc/{self.process.pid}/stat").read_text().rpartition(")")[2].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    def processor_seconds(self) -> dict[str, float]:
+        """What Blender has computed so far, by the names of its threads."""
+        spent: dict[str, float] = {}
+        for task in Path(f"/proc/{self.process.pid}/task").iterdir():
+            name, _, fields = (task / "stat").read_text().partition("(")[2].rpartition(")")
+            seconds = sum(map(int, fields.split()[11:13])) / os.sysconf("SC_CLK_TCK")
+            spent[name] = spent.get(name, 0.0) + seconds
+        return spent
 
 
 def _trimmed(rows: np.ndarray) -> np.ndarray:
@@ -173,7 +177,8 @@ class Installation:
         self.inside = Path("/work") / folder
         shutil.rmtree(self.work, ignore_errors=True)
         (self.work / "tmp").mkdir(parents=True)
-        shutil.copy(HERE / "probe.py", self.work)
+        for script in ("probe.py", "bits.py"):
+            shutil.copy(HERE / script, self.work)
 
     def run(self, *arguments: object) -> list[str]:
         return [str(SCRIPT), "run", self.suite, str(self.inside), *map(str, arguments)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -13,6 +14,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+ROOT = Path(__file__).absolute().parents[2]
 Place = tuple[float, float]
 
 WIDTH, HEIGHT = 1280, 800  # pixels; what fits a small laptop
@@ -79,6 +81,16 @@ class Screen:
 
     def type(self, text: str) -> None:
         self._xdotool("type", "--delay", 40, text)
+        self.understood()
+
+    def drop(self, place: Place, file: str) -> None:
+        """A file manager's drag that ends at a place. file: a path as the program under test sees it."""
+        self.move(place)
+        self.understood()
+        x, y = (str(round(c)) for c in place)
+        subprocess.run(
+            [sys.executable, "-m", "tests.gui.drag_source", self.display, x, y, file], cwd=ROOT, check=True
+        )
         self.understood()
 
     def shot(self, path: Path) -> None:

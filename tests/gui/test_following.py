@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.gui.following import following
+from tests.gui.following import following, spending
 
 
 @pytest.mark.parametrize("delay", [0.0, 0.05, 0.2])
@@ -35,3 +35,17 @@ def test_what_never_arrives_never_catches_up() -> None:
         [0.1 * k, kind, [float(k), 0.0, 0.0], [0.0, 0.0, 0.0]] for k in range(9) for kind in ("hook", "frame")
     ]
     assert following([*events, [1.0, "paper", [8.0, 0.0, 0.0], [0.0, 0.0, 0.0]]]).catch_up == float("inf")
+
+
+def test_known_spendings_are_found() -> None:
+    events = []
+    for k in range(11):
+        start, own, all_threads = 0.1 * k, 0.05 * k, 0.15 * k
+        steps = [("hook", 0.0, 0.0), ("tick", 0.01, 0.01), ("ticked", 0.03, 0.015), ("draw", 0.04, 0.02)]
+        for kind, wall, mine in [*steps, ("frame", 0.08, 0.05)]:
+            events.append([start + wall, kind, [0.0] * 3, [0.0] * 3, own + mine, all_threads + mine])
+    found = spending(events)
+    assert (found.tick, found.draw, found.rest) == pytest.approx((20.0, 40.0, 40.0))
+    assert (found.tick_processor, found.draw_processor, found.rest_processor) == pytest.approx((5.0, 30.0, 15.0))
+    assert found.ticks == 1.0
+    assert found.other_threads == pytest.approx(100.0)
