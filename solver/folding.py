@@ -15,9 +15,11 @@ from .constraints.orthogonal_geodesic import LinkAngles, StarAngles
 from .controls.agreement import check_agreement
 from .controls.condition_pull import FLAT, ConditionPull
 from .controls.control import Control, ControlPull
+from .controls.curve import Curve, CurvePull
 from .controls.handle_pull import HandlePull
 from .controls.homotopy import Homotopy
-from .controls.pull import Finding, Pull, Term
+from .controls.paper_pull import PaperPull
+from .controls.pull import Finding, Pull
 from .controls.registry import KINDS, control_label
 from .controls.side import Side, found_letters
 from .description import Handle, Weights
@@ -27,14 +29,12 @@ from .first_fold import choose_sides, first_fold
 from .laid_flat import laid_flat, off_plane
 from .net.piecewise_dog import PiecewiseDog
 from .objectives.bending import bending
-from .objectives.continuity import continuity
-from .objectives.isometry import isometry
 from .optimize.assembly import Problem
 from .optimize.sqp import StepReport, at_rest, projection_step, sqp_step
 from .optimize.term import ResidualTerm
 
 #: Softness of the constraints, 1/energy: while targets move, then in stages at rest, and while polishing.
-EPS_STAGES, EPS_POLISHING = (1e-2, 1e-3, 1e-5), 1e-7
+EPS_STAGES, EPS_POLISHING = (1e-2, 1e-3, 1e-5), 1e-8
 #: Still: over this many iterations the merit falls by less than this part of itself (or by _NOTHING).
 _STILL_OVER, _STILL_PART, _NOTHING = 10, 2e-3, 1e-7
 #: A stage ends after so many iterations even if it is not still: the rest is creep (method, section 3).
@@ -105,6 +105,7 @@ class FoldModel:
                 raise ValueError("positions are not finite")
             x = net.frame.to_net(array)
         self._state = at_rest(x)
+        self._paper = PaperPull(net, self.weights.isometry, self.weights.continuity)
         self._handles = HandlePull(net, self.weights.handles)
         self._condition = ConditionPull(net, self.weights.fold_condition)
         self._drive = AngleDrive(net, self.weights.fold_angle)
@@ -188,6 +189,12 @@ class FoldModel:
         """What the controls ask for and the present shape lacks."""
         return tuple(finding for pull in self._pulls() for finding in pull.findings(self._state.x))
 
+    @property
+    def flow_progress(self) -> dict[int, float]:
+        """The part of its way, 0 to 1, that each crease (from 0) with a curve has gone by now."""
+        pull = self._at_work.get(Curve.kind, ((), None))[1]
+        return pull.progress() if isinstance(pull, CurvePull) else {}
+
     def set_handles(self, handles: Sequence[Handle]) -> None:
         """Replace all handles. Handles that stay at the same point keep their way.
 
@@ -261,7 +268,8 @@ class FoldModel:
 
     def _pulls(self) -> list[Pull]:
         """Everything that pulls, in a fixed order."""
-        return [self._handles, self._condition, self._drive, *(pull for _, pull in self._at_work.values())]
+        at_work = (pull for _, pull in self._at_work.values())
+        return [self._paper, self._handles, self._condition, self._drive, *at_work]
 
     def _wake(self) -> None:
         self.status = Status.RUNNING
@@ -291,10 +299,8 @@ class FoldModel:
             old.replace({term.name: term for term in pulls})
             return old
         self._shape = shape
-        paper: list[Term] = [*bending(net, weights.bending), isometry(net, weights.isometry),
-                             continuity(net, weights.continuity)]  # fmt: skip
         constraints: list[ResidualTerm] = [StarAngles(net.stars), LinkAngles(net.links)]
-        return Problem([*paper, *pulls], constraints, net.flat, bending(net, 1.0))
+        return Problem([*bending(net, weights.bending), *pulls], constraints, net.flat, bending(net, 1.0))
 
     def _first_folded(self, flat: FloatArray) -> FloatArray:
         """A flat sheet lifted a little, so that it has a side to fold to everywhere."""
@@ -383,8 +389,11 @@ class FoldModel:
         return True
 
     def _amended(self, problem: Problem) -> bool:
-        """At rest: whether some pull gives way or pulls harder now."""
-        changed = [pull for pull in self._pulls() if pull.settle(self._state.x)]
+        """At rest: whether some pull gives way or pulls harder now, the paper only when all others are content."""
+        x = self._state.x
+        changed: list[Pull] = [pull for pull in self._pulls() if pull is not self._paper and pull.settle(x)]
+        if not changed and self._paper.settle(x):
+            changed.append(self._paper)
         for pull in changed:
             self._replace(problem, pull)
         return bool(changed)
@@ -397,9 +406,11 @@ class FoldModel:
         self._polished += 1
         if not (exact < _EXACT or stuck or self._polished >= _MAX_POLISH):
             return
-        if self._condition.undone(x):
-            # Polishing undid a faint fold: back to settling with a stiffer condition.
-            self._replace(problem, self._condition)
+        # Polishing may undo a faint fold or stretch an edge: back to settling, with what gave way held harder.
+        undone: list[Pull] = [pull for pull in (self._condition, self._paper) if pull.undone(x)]
+        for pull in undone:
+            self._replace(problem, pull)
+        if undone:
             self._still, self._polished = False, 0
         else:
             self.status = Status.SETTLED

@@ -38,6 +38,8 @@ _STIFFER, _STIFFENINGS = 4.0, 4
 _PARTS = 200
 #: At rest a free curve is laid onto the crease anew at most so often.
 _LAYINGS = 6
+#: Curvatures and torsions beyond this are no curve on any net, per net unit.
+_NO_CURVE = 1e6
 #: Points farther than this from the curve at rest pull harder, and farther than that have missed it, net units.
 _CLOSE, _REACHED = 0.01, 0.3
 
@@ -251,6 +253,11 @@ class CurvePull(ControlPull):
                 result.append(Finding(Lack.REACH, f"{name} stays {away:.3g} from the curve that it was given"))
         return result
 
+    def progress(self) -> dict[int, float]:
+        """The part of its way, 0 to 1, that each crease with a curve has gone by now."""
+        labels = self._net.crease_labels
+        return {crease_index(labels, flow.control.crease): flow.part for flow in self._flows}
+
     def _misses(self, x: FloatArray) -> list[float]:
         result = []
         for flow in self._flows:
@@ -298,6 +305,10 @@ class CurvePull(ControlPull):
             end_places = self._on_curve(control, label, arc, index)
             end = measure_curve(end_places, turn)
             size = np.abs(end.curvature)
+        if not all((np.abs(turns) <= _NO_CURVE).all() for turns in (end.curvature, end.torsion)):
+            raise DescriptionError(
+                f"{net.crease_labels[index]} is asked for a curvature or torsion beyond all bounds", element=label
+            )
         bare = np.abs(flat_shape.curvature)
         lack = bare * (1 - _FLATTER) - _FLATTER_BY - size
         worst = int(np.argmax(lack))

@@ -25,8 +25,9 @@ HANDLE_RATE = 1.0
 _STIFFER, _STIFFENINGS = 4.0, 3
 #: Handles farther than this from their targets at rest pull harder, net units.
 _CLOSE = 0.05
-#: Handles that would count as missed pull a little harder even where the paper is stretched, up to this mean.
-_MISSED, _STIFFER_IF_MISSED, _NEARLY_STRETCHED = 0.25, 1.6, 0.0028
+#: Handles that would count as missed pull a little harder even where the paper is stretched, up to this mean, and
+#: oftener: the paper holds harder meanwhile.
+_MISSED, _STIFFER_IF_MISSED, _NEARLY_STRETCHED, _STIFFENINGS_IF_MISSED = 0.25, 1.6, 0.0028, 6
 #: Handles nearer than this to each other hold one point, net units.
 _SAME_POINT = 1e-6
 
@@ -115,10 +116,10 @@ class HandlePull(Pull):
 
     def settle(self, x: FloatArray) -> bool:
         """Pull harder when handles stay off their targets though the paper is far from stretched."""
-        if not len(self._handles) or self._times >= _STIFFENINGS:
+        if not len(self._handles) or self._times >= _STIFFENINGS_IF_MISSED:
             return False
         gap, mean = self.gaps(x).max(), mean_stretch(self._net, x)
-        if gap > _CLOSE and mean <= 0.5 * MEAN_BUDGET:
+        if gap > _CLOSE and mean <= 0.5 * MEAN_BUDGET and self._times < _STIFFENINGS:
             self._harder *= _STIFFER
         elif gap > _MISSED and mean <= _NEARLY_STRETCHED:
             self._harder *= _STIFFER_IF_MISSED

@@ -21,7 +21,7 @@ _STEPS = 60
 #: A patch is kept when no four of its vertices miss by more than this, net units³ (six times a volume).
 _REACHED = 0.02
 #: A patch that misses its shape is kept harder, at most so often.
-_STIFFER, _STIFFENINGS = 4.0, 4
+_STIFFER, _STIFFENINGS = 4.0, 5
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ class KeepPull(ControlPull):
 
     def settle(self, x: FloatArray) -> bool:
         miss = float(np.abs(self._volumes(x) - self._end).max(initial=0.0))
-        if miss <= 0.5 * _REACHED or self._times >= _STIFFENINGS:
+        if miss <= 0.25 * _REACHED or self._times >= _STIFFENINGS:
             return False
         self._harder, self._times = self._harder * _STIFFER, self._times + 1
         return True

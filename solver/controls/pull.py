@@ -11,10 +11,6 @@ from ..optimize.term import LinearTerm, ResidualTerm
 
 Term = ResidualTerm | LinearTerm
 
-#: Points and borders that are drawn together come nearer at most this far an iteration, net units: four times as
-#: fast, a strip of twenty creases closes to a ring with a third more stretch.
-JOINT_RATE = 0.25
-
 
 class Lack(Enum):
     """What a finding is about."""

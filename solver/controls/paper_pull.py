@@ -1,0 +1,94 @@
+"""The paper itself: edges keep their length and copies of crease points stay together, harder where they did not.
+
+Energies spread an excess over many edges in the mean and leave peaks beside handles, creases and crease vertices.
+At rest, edges that are stretched too far weigh more from then on, and so do all stitches when they gape in the
+mean: what gave way is shared out among the neighbours (iteratively reweighted least squares).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..arrays import FloatArray
+from ..drive import MEAN_BUDGET
+from ..net.piecewise_dog import PiecewiseDog
+from ..objectives.continuity import continuity
+from ..objectives.isometry import isometry
+from .pull import Pull, Term
+
+#: An edge stretched by more than this at rest weighs more: the paper's 0.01 (section 6.1) with room to spare.
+ALLOWED_STRETCH = 0.007
+#: So many times more, at most so often: after that the drawing itself is in the way (a crossing, a cusp).
+_HEAVIER, _MOST_TIMES = 3.0, 4
+#: Stitches hold harder when they gape more than this in the mean at rest, net units: the paper's 2e-4 with room to
+#: spare. Not beyond the second bound: so coarse a net needs its gaps, and its angles suffered without them.
+ALLOWED_GAP, _COARSE_GAP = 1.4e-4, 4e-4
+#: So many times harder, at most in all.
+_TIGHTER, _TIGHTEST = 2.5, 6.25
+#: With more than this part of the stretch budget in the mean nothing can be shared out any more.
+_FULL = 0.8
+#: Polishing may stretch an edge to this without being taken back for it, and is taken back at most so often.
+_POLISHED_STRETCH, _MOST_RETURNS = 0.01, 2
+
+
+class PaperPull(Pull):
+    """Isometry and continuity of one net."""
+
+    def __init__(self, net: PiecewiseDog, isometry_weight: float, continuity_weight: float) -> None:
+        self._net = net
+        self._isometry = isometry(net, isometry_weight)
+        self._continuity = continuity(net, continuity_weight)
+        self._heavier = np.ones(len(net.edges))
+        self._tighter = 1.0
+        self._times, self._returns = 0, 0
+
+    def terms(self) -> list[Term]:
+        return [
+            replace(self._isometry, weight=self._isometry.weight * self._heavier),
+            replace(self._continuity, weight=self._continuity.weight * self._tighter),
+        ]
+
+    def settle(self, x: FloatArray) -> bool:
+        """Hold harder what has given way, unless all of the paper is at its limit: then others have to give way."""
+        stretch = self._stretch(x)
+        if self._times >= _MOST_TIMES or stretch.mean() > _FULL * MEAN_BUDGET:
+            return False
+        stretched = stretch > ALLOWED_STRETCH
+        gaping = self._tighter < _TIGHTEST and ALLOWED_GAP < self._mean_gap(x) < _COARSE_GAP
+        if not (stretched.any() or gaping):
+            return False
+        self._heavier = np.where(stretched, _HEAVIER, 1.0) * self._heavier
+        self._tighter *= _TIGHTER if gaping else 1.0
+        self._times += 1
+        return True
+
+    def undone(self, x: FloatArray) -> bool:
+        """Whether polishing to x has stretched edges too far, which then weigh more."""
+        stretch = self._stretch(x)
+        stretched = stretch > _POLISHED_STRETCH
+        if not stretched.any() or self._returns >= _MOST_RETURNS or stretch.mean() > _FULL * MEAN_BUDGET:
+            return False
+        self._heavier = np.where(stretched, _HEAVIER, 1.0) * self._heavier
+        self._returns += 1
+        return True
+
+    def wake(self) -> bool:
+        changed = self._times + self._returns > 0
+        self._heavier, self._tighter = np.ones(len(self._net.edges)), 1.0
+        self._times, self._returns = 0, 0
+        return changed
+
+    def _stretch(self, x: FloatArray) -> FloatArray:
+        """(E,) how much longer or shorter each edge is than flat, in parts of its length."""
+        ends = x[self._net.edges]
+        length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        return np.asarray(np.abs(length / self._net.edge_length - 1))
+
+    def _mean_gap(self, x: FloatArray) -> float:
+        """Mean distance of two copies of a crease point, net units; 0 without creases."""
+        if not len(self._continuity.stencil):
+            return 0.0
+        gaps = np.einsum("nk,nkc->nc", self._continuity.coefficients, x[self._continuity.stencil])
+        return float(np.linalg.norm(gaps, axis=1).mean())
