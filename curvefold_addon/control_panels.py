@@ -100,6 +100,63 @@ class FlowPanel(PaperPanel, bpy.types.Panel):
             column.prop(crease, "torsion_plus")
         if crease.flow != "NONE":
             column.prop(crease, "progress", slider=True)
+            found = live.crease_report(settings.id_data, settings.active_crease)
+            if found is not None and found.progress is not None:
+                column.progress(factor=found.progress, text=wording.progress(found))
+            column.prop(crease, "flow_speed")
+            column.prop(crease, "flow_strength")
+
+
+class AngleList(bpy.types.UIList):
+    """The angles at single points of a paper's creases"""
+
+    bl_idname = "CURVEFOLD_UL_angles"
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        data: bpy.types.PropertyGroup,
+        item: bpy.types.PropertyGroup,
+        icon: int,
+        active_data: bpy.types.PropertyGroup,
+        active_property: str,
+        index: int = 0,
+        flt_flag: int = 0,
+    ) -> None:
+        row = layout.row(align=True)
+        row.prop(item, "enabled", text="")
+        row = row.row(align=True)
+        row.active = item.enabled
+        row.prop(item, "name", text="", emboss=False)
+        row.prop(item, "angle", text="")
+
+
+class PointAnglesPanel(PaperPanel, bpy.types.Panel):
+    """Fold angles at single points of creases"""
+
+    bl_idname = "CURVEFOLD_PT_point_angles"
+    bl_label = "Angles at Points"
+    bl_parent_id = "CURVEFOLD_PT_creases"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = live.active_paper(context).data.curvefold
+        row = self.layout.row(align=True)
+        row.operator("curvefold.place_angle", icon="CURSOR")
+        row.operator("curvefold.add_angles", text="At Vertices", icon="VERTEXSEL")
+        if not settings.angles:
+            return
+        row = self.layout.row()
+        row.template_list(AngleList.bl_idname, "", settings, "angles", settings, "active_angle", rows=3)
+        row.operator("curvefold.remove_angle", text="", icon="REMOVE")
+        if settings.active_angle < len(settings.angles):
+            angle = settings.angles[settings.active_angle]
+            column = settings_column(self.layout)
+            column.active = angle.enabled
+            row = column.row(align=True)
+            row.prop(angle, "angle")
+            row.prop(angle, "signed", toggle=True)
+            column.prop(angle, "strength")
 
 
 class JointList(bpy.types.UIList):

@@ -93,6 +93,55 @@ class CreaseSettings(bpy.types.PropertyGroup):
         max=100.0,
         update=wake,
     )
+    flow_speed: FloatProperty(
+        name="Speed",
+        description="How fast the crease goes there, compared with the usual; slower is gentler to the paper",
+        default=1.0,
+        min=0.01,
+        soft_min=0.1,
+        soft_max=5.0,
+        max=100.0,
+        update=wake,
+    )
+    flow_strength: FloatProperty(
+        name="Strength",
+        description="How hard the curve pulls, compared with a usual one",
+        default=1.0,
+        min=0.01,
+        soft_max=10.0,
+        max=100.0,
+        update=wake,
+    )
+
+
+class PointAngleSettings(bpy.types.PropertyGroup):
+    """A fold angle at one point of a crease. ``name`` is Blender's own."""
+
+    enabled: BoolProperty(name="Enabled", description="Whether it acts", default=True, update=wake)
+    at: FloatVectorProperty(
+        name="Point", description="On the flat sheet", size=2, subtype="XYZ", unit="LENGTH", update=wake
+    )
+    angle: FloatProperty(
+        name="Angle",
+        description="The fold angle at this point; with Signed, a valley is positive and a mountain negative",
+        subtype="ANGLE",
+        default=pi / 3,
+        min=-pi,
+        max=pi,
+        update=wake,
+    )
+    signed: BoolProperty(
+        name="Signed", description="The sign of the angle counts; else the paper chooses the side", update=wake
+    )
+    strength: FloatProperty(
+        name="Strength",
+        description="How hard it pulls, compared with a usual one",
+        default=1.0,
+        min=0.01,
+        soft_max=10.0,
+        max=100.0,
+        update=wake,
+    )
 
 
 FAMILIES = (
@@ -201,7 +250,7 @@ class WeightSettings(bpy.types.PropertyGroup):
     }
 
 
-_CLASSES = (CreaseSettings, JointSettings, WeightSettings)
+_CLASSES = (CreaseSettings, PointAngleSettings, JointSettings, WeightSettings)
 
 
 def register() -> None:

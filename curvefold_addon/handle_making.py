@@ -72,6 +72,11 @@ def remove_handle(paper: bpy.types.Object, index: int) -> None:
     hook = settings.handles[index].hook
     settings.handles.remove(index)
     settings.active_handle = max(0, min(settings.active_handle, len(settings.handles) - 1))
+    drop_empty(hook)
+
+
+def drop_empty(hook: bpy.types.Object | None) -> None:
+    """Removes what pulls no handle any more, when it was made for one and nothing else needs it."""
     if hook is not None and hook.get(OURS) and not hook.children and _is_unused(hook):
         bpy.data.objects.remove(hook)
 
@@ -85,7 +90,7 @@ def go_on(paper: bpy.types.Object) -> None:
 
     Raises CurvefoldError, StateError.
     """
-    if bpy.app.background and not paper.data.is_editmode:
+    if bpy.app.background and not paper.data.is_editmode and paper.data.shape_keys is None:
         live.settle(paper.data)
     else:
         live.wake(paper.data)

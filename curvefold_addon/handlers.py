@@ -59,6 +59,12 @@ def file_opened(*_: object) -> None:
     live.wake_all()
 
 
+@_quiet
+def _enabled() -> None:
+    """The file that was open when the extension was enabled: an unfinished fold in it goes on."""
+    live.wake_all()
+
+
 _HANDLERS = (
     ("depsgraph_update_post", depsgraph_changed),
     ("frame_change_post", frame_changed),
@@ -73,6 +79,8 @@ _HANDLERS = (
 def register() -> None:
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).append(handler)
+    # Nothing can be asked about the file while an extension is being enabled.
+    bpy.app.timers.register(_enabled, first_interval=0.0)
 
 
 def unregister() -> None:
@@ -80,4 +88,6 @@ def unregister() -> None:
         handlers = getattr(bpy.app.handlers, name)
         if handler in handlers:
             handlers.remove(handler)
+    if bpy.app.timers.is_registered(_enabled):
+        bpy.app.timers.unregister(_enabled)
     live.forget()

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from .. import solver
-from .bridge import controls, drawing, hooks, papers, state
+from .bridge import baking, controls, drawing, hooks, papers, state
 from .bridge.drawing_objects import creases_of
 from .bridge.report import CreaseReport, Report, describe, describe_crease, describe_fault
 from .bridge.session import Session, carried_session, stored_session
@@ -99,7 +99,7 @@ def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
     paper = paper_of(mesh)
     if paper is None:
         return
-    check_not_edited(mesh)
+    check_writable(mesh)
     uid = mesh.session_uid
     found = make_session(paper)
     _stale.pop(uid, None)
@@ -114,10 +114,16 @@ def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
     _awake.discard(uid)
 
 
-def check_not_edited(mesh: bpy.types.Mesh) -> None:
-    """A mesh in Edit Mode, of whatever object that shows it, cannot be written. Raises StateError."""
+def check_writable(mesh: bpy.types.Mesh) -> None:
+    """Nothing that is written to a mesh in Edit Mode, of whatever object that shows it, lasts, and shape keys hide
+    it. Raises StateError.
+    """
     if mesh.is_editmode:
         raise state.StateError(f"{mesh.name} is in Edit Mode; leave it to fold the paper")
+    if baking.is_baked(mesh):
+        raise state.StateError(f"{mesh.name} is baked; free the bake to fold the paper")
+    if mesh.shape_keys is not None:
+        raise state.StateError(f"{mesh.name} has shape keys, which hide how it folds; remove them")
 
 
 def report(mesh: bpy.types.Mesh) -> Report | None:
@@ -354,7 +360,7 @@ def _paper(uid: int) -> bpy.types.Object | None:
 
 def _may_move(paper: bpy.types.Object) -> bool:
     mesh = paper.data
-    return mesh.curvefold.live and mesh.library is None and not mesh.is_editmode
+    return mesh.curvefold.live and mesh.library is None and not mesh.is_editmode and mesh.shape_keys is None
 
 
 def _inputs(paper: bpy.types.Object, found: Session) -> hooks.Inputs:

@@ -6,7 +6,16 @@ import bpy
 
 from . import drawing_context, live, wording
 from .bridge import baking, drawing_objects
-from .control_panels import CreaseList, CreasesPanel, FlowPanel, JointList, JointsPanel, WeightsPanel
+from .control_panels import (
+    AngleList,
+    CreaseList,
+    CreasesPanel,
+    FlowPanel,
+    JointList,
+    JointsPanel,
+    PointAnglesPanel,
+    WeightsPanel,
+)
 from .operators.add_sample import SampleMenu
 from .overlay import trouble_marks
 from .panel_parts import PaperPanel, Tab, say
@@ -43,7 +52,9 @@ def _draw_sheet(layout: bpy.types.UILayout, context: bpy.types.Context, sheet: b
     creases = sum(drawing_objects.is_crease(child) for child in sheet.children)
     layout.label(text=f"{sheet.name}: {wording.count(creases, 'crease')}", icon="OUTLINER_OB_CURVE")
     _draw_drawing_tools(layout, context, sheet)
-    if not creases:
+    if context.mode == "EDIT_CURVE" and drawing_objects.is_crease(context.active_object):
+        say(layout, context, wording.DRAWING, "INFO")
+    elif not creases:
         say(layout, context, wording.NO_CREASE, "INFO")
     column = layout.column()
     column.scale_y = 1.5
@@ -81,6 +92,8 @@ def _draw_standing(layout: bpy.types.UILayout, context: bpy.types.Context, paper
             say(box, context, wording.stretch(report), "BLANK1")
     if baking.is_baked(mesh):
         say(box, context, wording.BAKED, "SHAPEKEY_DATA")
+    elif mesh.shape_keys is not None:
+        say(box, context, wording.KEYED, "ERROR", alert=True)
     elif not settings.live:
         say(box, context, wording.NOT_LIVE, "PAUSE")
     elif settings.fold == 0.0 and not settings.handles:
@@ -135,13 +148,14 @@ class HandlesPanel(PaperPanel, bpy.types.Panel):
         if not settings.handles:
             return
         row = layout.row()
-        row.template_list(HandleList.bl_idname, "", settings, "handles", settings, "active_handle", rows=3)
+        row.template_list(HandleList.bl_idname, "", settings, "handles", settings, "chosen_handle", rows=3)
         column = row.column(align=True)
         column.operator("curvefold.remove_handle", text="", icon="REMOVE")
         column.operator("curvefold.pin", text="", icon="PINNED")
-        if settings.active_handle >= len(settings.handles):
+        chosen = settings.chosen_handle
+        if chosen >= len(settings.handles):
             return
-        handle = settings.handles[settings.active_handle]
+        handle = settings.handles[chosen]
         column = layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
@@ -235,6 +249,8 @@ _CLASSES = (
     MainPanel,
     HandlesPanel,
     CreasesPanel,
+    AngleList,
+    PointAnglesPanel,
     FlowPanel,
     JointsPanel,
     DrawingPanel,

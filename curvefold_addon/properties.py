@@ -19,8 +19,8 @@ from bpy.props import (
     PointerProperty,
 )
 
-from . import control_properties, live
-from .control_properties import SIDES, CreaseSettings, JointSettings, WeightSettings, wake
+from . import control_properties, handle_choice, live
+from .control_properties import SIDES, CreaseSettings, JointSettings, PointAngleSettings, WeightSettings, wake
 
 ROLES = (
     ("NONE", "Neither", "No part of a drawing"),
@@ -131,6 +131,10 @@ class PaperSettings(bpy.types.PropertyGroup):
     )
     handles: CollectionProperty(type=HandleSettings)
     active_handle: IntProperty(name="Active Handle", default=0, min=0)
+    #: What the list shows as active: it goes with the selection, both ways.
+    chosen_handle: IntProperty(
+        name="Active Handle", get=handle_choice.chosen, set=handle_choice.choose, options={"SKIP_SAVE"}
+    )
     #: One entry for each crease of the drawing, in its order (``bridge.controls.match_creases``).
     creases: CollectionProperty(type=CreaseSettings)
     active_crease: IntProperty(name="Active Crease", default=0, min=0)
@@ -140,6 +144,8 @@ class PaperSettings(bpy.types.PropertyGroup):
         default=True,
         update=wake,
     )
+    angles: CollectionProperty(type=PointAngleSettings)
+    active_angle: IntProperty(name="Active Angle", default=0, min=0)
     joints: CollectionProperty(type=JointSettings)
     active_joint: IntProperty(name="Active Joint", default=0, min=0)
     weights: PointerProperty(type=WeightSettings)
@@ -160,7 +166,11 @@ class OverlaySettings(bpy.types.PropertyGroup):
     angles: BoolProperty(name="Fold Angles", description="Fold angles in figures", default=False)
     stretch: BoolProperty(name="Stretch", description="Where the paper is stretched", default=False)
     rulings: BoolProperty(name="Rulings", description="The straight lines of the bent paper", default=False)
-    pulls: BoolProperty(name="Pull Lines", description="From each handle's point to its target", default=True)
+    pulls: BoolProperty(
+        name="Pull Lines",
+        description="From each handle's point to its target, and between points that are joined",
+        default=True,
+    )
     troubles: BoolProperty(name="Troubles", description="Where a drawing cannot be folded", default=True)
 
 

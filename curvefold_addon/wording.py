@@ -16,10 +16,12 @@ JOINT_ICONS = {"POINTS": "LINKED", "BORDERS": "MESH_CYLINDER", "PATCH": "FACESEL
 STATE_ICONS = {"settled": "CHECKMARK", "folding": "SORTTIME", "trouble": "ERROR"}
 
 NO_SHEET = "Start with a sheet of paper, a sample, or a drawing"
-NO_CREASE = "Draw a crease: a curve along which the paper folds"
+NO_CREASE = "Draw creases on it: curves along which the paper folds"
+DRAWING = "Draw from border to border, or edit the points; Tab ends it"
 NEXT = "Slide Fold, or place handles and drag them"
-ASLEEP = "It looks up when something moves"
+ASLEEP = "Asleep: it wakes when something moves"
 NOT_LIVE = "Not live: it stays as it is"
+KEYED = "Its shape keys hide how it folds: remove them"
 BAKED = "Baked: it plays its shape keys"
 
 
@@ -41,6 +43,11 @@ def crease(report: CreaseReport) -> str:
     angle = "" if report.fold_angle is None else f" {report.fold_angle:.0f}°"
     gaps = "" if report.folded else ", with gaps"
     return f"{SIDES[report.found]}{angle}{gaps}"
+
+
+def progress(report: CreaseReport) -> str:
+    """How far a crease is on its way to the curve it is given."""
+    return f"{report.progress:.0%} of the way"
 
 
 def effort(report: Report) -> str:

@@ -1,4 +1,4 @@
-"""From the settings of a paper's creases, joints and patches to the controls that the solver is told."""
+"""From the settings of a paper's creases, angles, joints and patches to the controls that the solver is told."""
 
 from __future__ import annotations
 
@@ -92,6 +92,9 @@ def told(settings: Any, values: Any, held: bool, drawn: Sequence[DrawnCrease], t
         _tell_crease(gathering, entry, crease.name, number)
         if entry.flow != "NONE":
             _tell_flow(gathering, settings.creases[number - 1].curve, entry, crease, number, target)
+    for entry in values.angles:
+        if entry.enabled:
+            _tell_angle(gathering, entry)
     for entry in values.joints:
         if entry.enabled:
             _tell_joint(gathering, entry)
@@ -116,17 +119,31 @@ def _tell_crease(gathering: _Gathering, entry: Any, name: str, number: int) -> N
     if entry.amount != 100.0:
         gathering.add(name, Amount, number, entry.amount / 100.0)
     if entry.use_angle:
-        degrees = math.degrees(entry.angle)
-        if not entry.signed:
-            degrees = abs(degrees)
-        gathering.add(name, Angle, max(-180.0, min(180.0, degrees)), number, signed=bool(entry.signed))
+        gathering.add(name, Angle, _degrees(entry), number, signed=bool(entry.signed))
+
+
+def _tell_angle(gathering: _Gathering, entry: Any) -> None:
+    at = (float(entry.at[0]), float(entry.at[1]))
+    signed, strength = bool(entry.signed), float(entry.strength)
+    gathering.add(entry.name, Angle, _degrees(entry), at=at, signed=signed, strength=strength)
+
+
+def _degrees(entry: Any) -> float:
+    """What an entry with an angle asks for; where the sign does not count, its size."""
+    degrees = math.degrees(entry.angle)
+    return max(-180.0, min(180.0, degrees if entry.signed else abs(degrees)))
 
 
 def _tell_flow(
     gathering: _Gathering, item: Any, entry: Any, crease: DrawnCrease, number: int, target: TargetReader
 ) -> None:
     """All begins at the flat crease, so that the same words ask for the same shape whatever was before."""
-    way = {"progress": entry.progress / 100.0, "from_flat": True}
+    way = {
+        "progress": entry.progress / 100.0,
+        "speed": float(entry.flow_speed),
+        "strength": float(entry.flow_strength),
+        "from_flat": True,
+    }
     if entry.flow == "SHAPE":
         times, plus, torsion = (float(v) for v in (entry.curvature_times, entry.curvature_plus, entry.torsion_plus))
         gathering.add(
@@ -164,7 +181,7 @@ def _tell_joint(gathering: _Gathering, entry: Any) -> None:
 
 
 def _names(settings: Any) -> list[str]:
-    return [entry.name for entries in (settings.creases, settings.joints) for entry in entries]
+    return [entry.name for entries in (settings.creases, settings.angles, settings.joints) for entry in entries]
 
 
 def _side(entry: Any, drawn: str, driven: float | None) -> str:

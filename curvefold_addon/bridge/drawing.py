@@ -146,14 +146,12 @@ class _Reading:
         except solver.PatternError as error:
             raise solver.PatternError(error.message, element=sheet.name, place=error.where.place) from error
         shapely.prepare(polygon)
-        creases = [
-            crease
-            for item in drawing_objects.creases_of(sheet)
-            if item.curvefold.assignment != "F"
-            for crease in self._creases(item, polygon)
-        ]
-        if not creases:
-            self.trouble("it has no crease yet, so there is nothing to fold", sheet, None)
+        drawn = drawing_objects.creases_of(sheet)
+        folded = [item for item in drawn if item.curvefold.assignment != "F"]
+        # A sheet without any crease is one on which nobody has drawn yet: no trouble.
+        if drawn and not folded:
+            self.trouble("all its creases are Flat, so there is nothing to fold", sheet, None)
+        creases = [crease for item in folded for crease in self._creases(item, polygon)]
         return solver.CreasePattern(boundary, holes, creases, sheet.name, unit_mm)
 
     def _unit_mm(self) -> float:
@@ -226,7 +224,8 @@ class _Reading:
             self.trouble(f"{error.message}, so it is left out", item, None)
             return []
         if not strands:
-            self.trouble("it is empty: draw a curve in it, or delete it", item, None)
+            if item.mode != "EDIT":  # otherwise it is about to be drawn
+                self.trouble("it is empty: draw a curve in it, or delete it", item, None)
             return []
         self._check_flat(strands, item, "it leaves the sheet's plane by {}", "; what lies below or above is folded")
         found = []

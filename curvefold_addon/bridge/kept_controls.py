@@ -17,7 +17,7 @@ def keep_controls(
 ) -> None:
     """Says in the settings what the controls say. scale: the paper's units in one of the drawing's.
 
-    Angles at single points and curves given by points have no settings and are left out.
+    Curves given by points have no settings and are left out.
     """
     labels = [crease.label for crease in drawn]
     for entry in fields(Weights):
@@ -25,6 +25,8 @@ def keep_controls(
     for control in controls:
         if isinstance(control, Pair | Keep | Glue):
             _keep_joint(settings.joints.add(), control, len(settings.joints), scale)
+        elif isinstance(control, Angle) and control.at is not None:
+            _keep_angle(settings.angles.add(), control, len(settings.angles), scale)
         elif isinstance(control, Side | Amount | Angle | Curve) and control.crease is not None:
             _keep_crease(settings.creases[crease_index(labels, control.crease)], control, scale)
 
@@ -35,12 +37,19 @@ def _keep_crease(crease: Any, control: Side | Amount | Angle | Curve, scale: flo
     elif isinstance(control, Amount):
         crease.amount = 100.0 * control.part
     elif isinstance(control, Angle):
-        if control.at is None:
-            crease.use_angle, crease.signed, crease.angle = True, control.signed, math.radians(control.degrees)
+        crease.use_angle, crease.signed, crease.angle = True, control.signed, math.radians(control.degrees)
     elif control.points is None:
         crease.flow, crease.progress = "SHAPE", 100.0 * control.progress
+        crease.flow_speed, crease.flow_strength = control.speed, control.strength
         crease.curvature_times = control.curvature_times
         crease.curvature_plus, crease.torsion_plus = control.curvature_plus / scale, control.torsion_plus / scale
+
+
+def _keep_angle(angle: Any, control: Angle, number: int, scale: float) -> None:
+    assert control.at is not None
+    angle.name = f"Angle {number}"
+    angle.at = _scaled(control.at, scale)
+    angle.angle, angle.signed, angle.strength = math.radians(control.degrees), control.signed, control.strength
 
 
 def _keep_joint(joint: Any, control: Pair | Keep | Glue, number: int, scale: float) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solver.net.carry_over import scaled
+from . import mesh_layers
 
 if TYPE_CHECKING:
     from ...solver import FoldResult, RenderMap
@@ -22,6 +23,9 @@ CREASE = "crease"
 #: Edge attribute: whether an edge lies on a crease.
 CREASE_EDGE = "crease_edge"
 NO_CREASE = -1
+#: Blender's own attribute of that meaning.
+_SHARP_EDGE = "sharp_edge"
+_OURS = frozenset({FLAT_UV, PATCH, CREASE, CREASE_EDGE, _SHARP_EDGE})
 
 #: A drawing that does not say how large it is, is taken to be in millimetres.
 DEFAULT_UNIT_MM = 1.0
@@ -55,7 +59,11 @@ def build_mesh(result: FoldResult) -> Any:
 
 
 def fill(mesh: Any, surface: RenderMap, positions: NDArray[np.float64]) -> None:
-    """Gives a mesh the geometry of a net at positions (V,3) in place of its own; the flat sheet becomes its UVs."""
+    """Gives a mesh the geometry of a net at positions (V,3) in place of its own; the flat sheet becomes its UVs.
+
+    What users have put on the old geometry is carried over by its place on the flat sheet (``mesh_layers``).
+    """
+    theirs = mesh_layers.read(mesh, FLAT_UV, PATCH, _OURS)
     mesh.clear_geometry()
     corners = np.asarray(surface.face_vertices, dtype=np.int32)
     starts = np.asarray(surface.face_start[:-1], dtype=np.int32)
@@ -74,6 +82,8 @@ def fill(mesh: Any, surface: RenderMap, positions: NDArray[np.float64]) -> None:
     patch = mesh.attributes.new(PATCH, "INT", "FACE")
     patch.data.foreach_set("value", np.asarray(surface.face_patch, dtype=np.int32))
     _mark_creases(mesh, surface.crease_edges, surface.crease_edge_crease)
+    if theirs is not None:
+        mesh_layers.write(mesh, FLAT_UV, theirs)
     mesh.update()
 
 
@@ -130,8 +140,8 @@ def _mark_creases(mesh: Any, crease_edges: NDArray[np.int64], creases: NDArray[n
     on_crease = np.zeros(count, dtype=bool)
     on_crease[edges] = True
     mesh.attributes.new(CREASE, "INT", "EDGE").data.foreach_set("value", number)
-    # Everything is shaded smooth but the creases. Blender reads "sharp_edge"; the other one is ours to keep.
-    for name in (CREASE_EDGE, "sharp_edge"):
+    # Everything is shaded smooth but the creases. Blender reads the second; the first one is ours to keep.
+    for name in (CREASE_EDGE, _SHARP_EDGE):
         attribute = mesh.attributes.get(name) or mesh.attributes.new(name, "BOOLEAN", "EDGE")
         attribute.data.foreach_set("value", on_crease)
 

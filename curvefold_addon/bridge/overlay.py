@@ -5,7 +5,7 @@ Everything is in the paper's local coordinates and depends on a net and the posi
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,12 +15,26 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ...solver import Handle, Measurement, PiecewiseDog, RulingKind, Rulings, measure, rulings
+from ...solver import (
+    Angle,
+    Glue,
+    Handle,
+    HandleError,
+    Measurement,
+    Pair,
+    PiecewiseDog,
+    RulingKind,
+    Rulings,
+    measure,
+    rulings,
+)
+from ...solver.controls.control import Control
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 Indices = NDArray[np.int32]
 Color = tuple[float, float, float, float]
+Point = tuple[float, float]
 
 #: Display colours (sRGB). Red and blue are told apart by all eyes; dark: a line that is drawn but not folded.
 MOUNTAIN: Color = (0.90, 0.16, 0.10, 1.0)
@@ -41,8 +55,12 @@ STRETCH_RAMP: tuple[tuple[float, Color], ...] = (
     (0.010, (0.90, 0.08, 0.05, 0.90)),
 )
 PULL: Color = (1.0, 0.62, 0.05, 1.0)
-#: A target nearer than this is reached and has no pull line, net units.
+JOINT: Color = (0.95, 0.30, 0.75, 1.0)
+ASKED_ANGLE: Color = (0.70, 0.88, 0.20, 1.0)
+#: A target nearer than this is reached and has no line, net units.
 REACHED = 0.05
+#: An angle asked for at a point belongs to a crease point at most this far away, as in the solver, net units.
+_NEAR = 1.5
 #: A crease with more points than this has its angle written at three places instead of one.
 _SHORT = 12
 
@@ -75,10 +93,11 @@ class Label:
 
 @dataclass(frozen=True, eq=False)
 class Pulls:
-    """lines from points of the paper to their targets; points (H,3) of all handles that act."""
+    """lines to where points of the paper are drawn; points (H,3): all that are drawn; color of these marks."""
 
     lines: Lines
     points: Single
+    color: Color
 
 
 class PaperShape:
@@ -112,9 +131,8 @@ class PaperShape:
         if "creases" not in self._done:
             surface = self.net.render_map
             sides = np.append(sides_found(self.measurement), 0)[_edge_points(self.net)]
-            palette = np.array([MOUNTAIN, UNFOLDED, VALLEY], dtype=np.float32)
             points = self.shown[surface.crease_edges].reshape(-1, 3)
-            self._done["creases"] = Lines(_single(points), palette[sides + 1].repeat(2, axis=0))
+            self._done["creases"] = Lines(_single(points), line_colors(sides))
         lines: Lines = self._done["creases"]
         return lines
 
@@ -163,8 +181,36 @@ class PaperShape:
             targets[k] = np.where(handle.axes, handle.target, points[k])
         away = np.linalg.norm(targets - points, axis=1) > REACHED * self.net.frame.unit
         ends = np.stack([points[away], targets[away]], axis=1).reshape(-1, 3)
-        colors = np.tile(np.array(PULL, dtype=np.float32), (len(ends), 1))
-        return Pulls(Lines(_single(ends), colors), _single(points))
+        return _pulls(ends, points, PULL)
+
+    def joints(self, controls: Iterable[Control]) -> Pulls:
+        """Between the points that are joined, and the ends of glued borders, where they are apart."""
+        pairs = tuple(pair for control in controls for pair in _joined(control))
+        if self._done.get("pairs") != pairs:
+            self._done["pairs"], self._done["joints"] = pairs, self._joints(pairs)
+        joints: Pulls = self._done["joints"]
+        return joints
+
+    def _joints(self, pairs: tuple[tuple[Point, Point], ...]) -> Pulls:
+        places = []
+        for pair in pairs:
+            try:
+                places += [weights @ self.positions[v] for v, weights in (_located(self.net, at) for at in pair)]
+            except HandleError:
+                continue  # off the sheet: the report says so
+        ends = np.array(places).reshape(-1, 2, 3)
+        away = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > REACHED * self.net.frame.unit
+        return _pulls(ends[away].reshape(-1, 3), ends.reshape(-1, 3), JOINT)
+
+    def asked_angles(self, controls: Iterable[Control]) -> Pulls:
+        """The points of creases that are asked for an angle of their own."""
+        places = tuple(c.at for c in controls if isinstance(c, Angle) and c.at is not None)
+        if self._done.get("places") != places:
+            points = [nearest_angle(self.net, at) for at in places]
+            marks = np.array([self._crease_point(k) for k in points if k is not None]).reshape(-1, 3)
+            self._done["places"], self._done["asked"] = places, _pulls(np.empty((0, 3)), marks, ASKED_ANGLE)
+        asked: Pulls = self._done["asked"]
+        return asked
 
     def _angle_labels(self) -> Iterable[Label]:
         points, m = self.net.crease_points, self.measurement
@@ -177,8 +223,7 @@ class PaperShape:
             for share in shares:
                 k = int(mine[round(share * (len(mine) - 1))])
                 x, y, z = self._crease_point(k)
-                color = (MOUNTAIN, UNFOLDED, VALLEY)[sides[k] + 1]
-                yield Label((x, y, z), f"{m.fold_angle[k]:.0f}°", color)
+                yield Label((x, y, z), f"{m.fold_angle[k]:.0f}°", side_color(int(sides[k])))
 
     def _crease_point(self, k: int) -> list[float]:
         points, x = self.net.crease_points, self.positions
@@ -188,11 +233,38 @@ class PaperShape:
         return middle
 
 
+def nearest_angle(net: PiecewiseDog, at: Sequence[float]) -> int | None:
+    """The crease point nearest to a point of the flat sheet that can have an angle; None where none is near."""
+    known = _angle_points(net)
+    if len(known) == 0:
+        return None
+    place = net.frame.to_net(np.array([at], dtype=np.float64))[0]
+    distance = np.hypot(*(net.crease_points.position[known] - place).T)
+    nearest = int(np.argmin(distance))
+    return int(known[nearest]) if distance[nearest] <= _NEAR else None
+
+
+def angle_at(net: PiecewiseDog, positions: Array, at: Sequence[float]) -> float | None:
+    """Degrees to which a crease is folded near a point of the flat sheet; None where there is none to measure."""
+    k = nearest_angle(net, at)
+    return None if k is None else float(measure(net, positions).fold_angle[k])
+
+
 def sides_found(m: Measurement) -> NDArray[np.int64]:
     """(K,) +1 where a crease point is a valley, -1 a mountain, 0 where it is not folded."""
     with np.errstate(invalid="ignore"):
         folded = m.folded & (m.fold_angle >= FOLDED_FROM)
     return np.where(folded, m.fold_sign, 0)
+
+
+def side_color(side: int) -> Color:
+    """Of a valley (+1), a mountain (-1), and what is not folded (0)."""
+    return (MOUNTAIN, UNFOLDED, VALLEY)[side + 1]
+
+
+def line_colors(sides: NDArray[np.int64]) -> Single:
+    """(2n,4) colours of the ends of n segments on these sides (n,)."""
+    return np.array([MOUNTAIN, UNFOLDED, VALLEY], dtype=np.float32)[sides + 1].repeat(2, axis=0)
 
 
 def stretch_colors(stretch: Array) -> Single:
@@ -248,16 +320,35 @@ def _edge_points(net: PiecewiseDog) -> NDArray[np.int64]:
     surface, points = net.render_map, net.crease_points
     middle = surface.uv[surface.crease_edges].mean(axis=1)
     place = net.frame.to_drawing(points.position)
-    # Where an angle can be measured does not depend on the shape.
-    flat = np.column_stack([net.rest, np.zeros(len(net.rest))])
-    known = np.isfinite(measure(net, flat).fold_angle)
+    known = _angle_points(net)
     result = np.full(len(middle), -1, dtype=np.int64)
     for chain in np.unique(surface.crease_edge_chain):
         edges = np.flatnonzero(surface.crease_edge_chain == chain)
-        mine = np.flatnonzero((points.chain == chain) & known)
+        mine = known[points.chain[known] == chain]
         if len(mine):
             result[edges] = mine[cKDTree(place[mine]).query(middle[edges])[1]]
     return result
+
+
+@lru_cache(maxsize=4)
+def _angle_points(net: PiecewiseDog) -> NDArray[np.int64]:
+    """(n,) the crease points whose angle can be measured: that does not depend on the shape."""
+    flat = np.column_stack([net.rest, np.zeros(len(net.rest))])
+    return np.flatnonzero(np.isfinite(measure(net, flat).fold_angle))
+
+
+def _joined(control: Control) -> tuple[tuple[Point, Point], ...]:
+    """Pairs of points of the flat sheet that a control draws together."""
+    if isinstance(control, Pair):
+        return ((control.first, control.second),)
+    if isinstance(control, Glue):
+        return ((control.first[0], control.second[0]), (control.first[1], control.second[1]))
+    return ()
+
+
+def _pulls(ends: Array, points: Array, color: Color) -> Pulls:
+    colors = np.tile(np.array(color, dtype=np.float32), (len(ends), 1))
+    return Pulls(Lines(_single(ends), colors), _single(points), color)
 
 
 @lru_cache(maxsize=256)

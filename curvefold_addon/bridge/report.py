@@ -10,7 +10,6 @@ import numpy as np
 
 from ...solver.fold import ANGLE_REACHED, MAX_MEAN_STRETCH, fold_angle_quantiles
 from ...solver.folding import REACHED
-from ...solver.measurement import Measurement
 from .hooks import handle_label
 from .session import Session
 
@@ -20,12 +19,16 @@ _FLAT = 1e-3
 
 @dataclass(frozen=True)
 class CreaseReport:
-    """found: M, V or U; fold_angle: median, degrees, None where it has no meaning; folded: at every point."""
+    """found: M, V or U; fold_angle: median, degrees, None where it has no meaning; folded: at every point.
+
+    progress: the part of its way, 0 to 1, that it has gone to the curve it is given; None without one.
+    """
 
     label: str
     found: str
     fold_angle: float | None
     folded: bool
+    progress: float | None = None
 
 
 @dataclass(frozen=True)
@@ -53,7 +56,7 @@ def describe_fault(fault: str) -> Report:
 def describe(found: Session, settings: Any, fault: str, folding: bool, units: Any) -> Report:
     """fault: why the paper cannot be folded as it is now, or empty; units: the scene's unit settings."""
     m = found.measurement
-    creases = tuple(_crease(m, label, k) for k, label in enumerate(found.net.crease_labels))
+    creases = tuple(_crease(found, label, k) for k, label in enumerate(found.net.crease_labels))
     median = fold_angle_quantiles(m)[1]
     state, sentence = _standing(found, settings, fault, folding, units, creases, median)
     return Report(
@@ -73,7 +76,7 @@ def describe(found: Session, settings: Any, fault: str, folding: bool, units: An
 def describe_crease(found: Session, index: int) -> CreaseReport | None:
     """What became of one crease, as last measured; None when there is no such crease."""
     labels = found.net.crease_labels
-    return _crease(found.measurement, labels[index], index) if index < len(labels) else None
+    return _crease(found, labels[index], index) if index < len(labels) else None
 
 
 def _standing(
@@ -138,11 +141,13 @@ def _late_handle(found: Session, settings: Any, units: Any) -> str:
     return f"{label} is {length.strip()} from its target: out of reach"
 
 
-def _crease(m: Measurement, label: str, index: int) -> CreaseReport:
+def _crease(found: Session, label: str, index: int) -> CreaseReport:
+    m = found.measurement
     mine = m.crease == index
     known = m.fold_angle[mine & np.isfinite(m.fold_angle)]
     angle = float(np.median(known)) if len(known) else None
-    return CreaseReport(label, m.side(index), angle, bool(m.folded[mine & m.asked].all()))
+    folded = bool(m.folded[mine & m.asked].all())
+    return CreaseReport(label, m.side(index), angle, folded, found.flows.get(index))
 
 
 def _sentence(text: str) -> str:

@@ -86,6 +86,7 @@ class Session:
     drawn        the creases as they are drawn
     refused      why controls do not act that do not fit the paper, sentences
     findings     what was asked and not reached, sentences
+    flows        the part of its way, 0 to 1, that each crease (from 0) with a curve has gone; empty when not known
     run          the name of the motion, in the .blend too; empty when it has none yet
     frame        the last frame of an animation that the paper has followed
     failed       whether the numbers ran away; the last good shape is kept
@@ -107,6 +108,7 @@ class Session:
         self.measurement = measure(net, positions)
         self.findings: tuple[str, ...] = ()
         self.refused: tuple[str, ...] = ()
+        self.flows: dict[int, float] = {}
         self.iterations = 0
         self.milliseconds = 0.0
         self.frame: int | None = None
@@ -262,6 +264,7 @@ class Session:
         self._worker = self._worker.again(positions)
         self._taken, self._counted = None, 0
         self.report, self.failed, self.findings, self.refused = None, False, (), ()
+        self.flows = {}
         self.positions = positions
 
     def _take(self, step: Step | None) -> None:
@@ -269,7 +272,7 @@ class Session:
             return
         self._taken = step
         self.positions, self.report, self.findings = step.positions, step.report, step.findings
-        self.refused = step.refused
+        self.refused, self.flows = step.refused, step.flows
         self.iterations += step.iterations - self._counted
         self._counted = step.iterations
         self.milliseconds = 1000.0 * step.seconds

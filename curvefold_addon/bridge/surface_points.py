@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,27 +29,44 @@ class SurfacePoint:
     place: tuple[float, float, float]
 
 
+@dataclass(frozen=True)
+class CreasePoint:
+    """A point of a crease, whose number is from 0. at: on the flat sheet."""
+
+    crease: int
+    at: Point
+
+
 def under_ray(mesh: Any, origin: Any, direction: Any) -> SurfacePoint | None:
     """The first point of the paper along a ray in its local coordinates."""
     place, _, face, _ = _tree(mesh).ray_cast(Vector(origin), Vector(direction))
     return None if place is None else _on_face(mesh, face, place)
 
 
-def crease_under_ray(mesh: Any, origin: Any, direction: Any) -> int | None:
-    """The crease that is nearest to where a ray first meets the paper; None where it misses."""
+def crease_under_ray(mesh: Any, origin: Any, direction: Any) -> CreasePoint | None:
+    """The point of a crease that is nearest to where a ray in the paper's local coordinates first meets the paper.
+
+    None where the ray misses, and on a paper without creases. Raises StateError.
+    """
     place, *_ = _tree(mesh).ray_cast(Vector(origin), Vector(direction))
     if place is None:
         return None
-    best, best_gap = None, float("inf")
-    for item, edge in zip(_layer(mesh, mesh.attributes, CREASE).data, mesh.edges, strict=True):
+    best, best_gap, best_part = None, float("inf"), 0.0
+    for edge, item in zip(mesh.edges, _layer(mesh, mesh.attributes, CREASE).data, strict=True):
         if item.value == NO_CREASE:
             continue
         start, end = (mesh.vertices[k].co for k in edge.vertices)
-        on_line, part = intersect_point_line(place, start, end)
-        gap = (place - (start if part < 0 else end if part > 1 else on_line)).length
+        _, part = intersect_point_line(place, start, end)
+        part = max(0.0, min(1.0, part))
+        gap = (place - start.lerp(end, part)).length
         if gap < best_gap:
-            best, best_gap = int(item.value), gap
-    return best
+            best, best_gap, best_part = (item.value, *edge.vertices), gap, part
+    if best is None:
+        return None
+    number, first, second = best
+    start, end = _flat_places(mesh, (first, second))
+    x, y = start.lerp(end, best_part)
+    return CreasePoint(int(number), (x, y))
 
 
 def nearest(mesh: Any, place: Any) -> SurfacePoint:
@@ -66,6 +84,18 @@ def selected(mesh: Any) -> list[SurfacePoint]:
         if vertex.select and vertex.link_loops:
             x, y = vertex.link_loops[0][flat].uv
             points.append(SurfacePoint((x, y), tuple(vertex.co)))
+    return points
+
+
+def selected_on_creases(mesh: Any) -> list[Point]:
+    """On the flat sheet, the vertices on creases that are selected in Edit Mode. Raises StateError."""
+    edited = bmesh.from_edit_mesh(mesh)
+    flat, crease = _layer(mesh, edited.loops.layers.uv, FLAT_UV), _layer(mesh, edited.edges.layers.int, CREASE)
+    points = []
+    for vertex in edited.verts:
+        if vertex.select and vertex.link_loops and any(e[crease] != NO_CREASE for e in vertex.link_edges):
+            x, y = vertex.link_loops[0][flat].uv
+            points.append((x, y))
     return points
 
 
@@ -115,6 +145,13 @@ def _layer(mesh: Any, layers: Any, name: str) -> Any:
     if layer is None:
         raise StateError(f"{mesh.name} has lost its {name} layer; settle the paper in Object Mode to mend it")
     return layer
+
+
+def _flat_places(mesh: Any, vertices: Sequence[int]) -> list[Any]:
+    """Where vertices are on the flat sheet."""
+    flat = _layer(mesh, mesh.uv_layers, FLAT_UV).uv
+    found = {loop.vertex_index: loop.index for loop in mesh.loops if loop.vertex_index in vertices}
+    return [flat[found[vertex]].vector.copy() for vertex in vertices]
 
 
 def _tree(mesh: Any) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from threading import Event
 
@@ -47,7 +47,7 @@ class Step:
 
     iterations: since the worker was made; measurement: None when it was not due; findings: what was asked and not
     reached, when it has come to rest; refused: why controls do not act that do not fit the paper; seconds: of one
-    iteration
+    iteration; flows: the part of its way, 0 to 1, that each crease (from 0) with a curve has gone
     """
 
     positions: Array
@@ -58,6 +58,7 @@ class Step:
     findings: tuple[str, ...]
     refused: tuple[str, ...]
     seconds: float
+    flows: dict[int, float]
 
     @property
     def rests(self) -> bool:
@@ -74,6 +75,8 @@ class Worker:
     def __init__(self, net: PiecewiseDog, positions: Array) -> None:
         self._net, self._positions = net, positions
         self._model: FoldModel | None = None
+        #: Whose model this one goes on with.
+        self._earlier: Worker | None = None
         self._told: Inputs | None = None
         self._refused: tuple[str, ...] = ()
         self._asked: Inputs | None = None
@@ -89,11 +92,17 @@ class Worker:
         return self._job is not None
 
     def again(self, positions: Array) -> Worker:
-        """A worker that begins elsewhere; what takes long to prepare goes with it. Waits for the running job."""
-        self.join()
+        """A worker that begins elsewhere; what takes long to prepare goes with it.
+
+        Waits for nothing: the thread does one job after the other, and when the new worker's begins, this one's
+        is over.
+        """
+        self._enough.set()
+        if self._job is not None and self._job.cancel():
+            self._job = None
         worker = Worker(self._net, positions)
-        if self._model is not None:
-            worker._model = self._model.again(positions)
+        unused = self._job is None and self._model is None
+        worker._earlier = self._earlier if unused else self
         return worker
 
     def work(self, inputs: Inputs, deadline: float) -> None:
@@ -121,7 +130,9 @@ class Worker:
         return self.newest
 
     def join(self) -> None:
-        """Waits for the running job."""
+        """Waits for the running job, and for one of the worker that this one began as."""
+        if self._earlier is not None and self._earlier._job is not None:
+            wait([self._earlier._job])  # what went wrong in it matters no more
         job, self._job = self._job, None
         self._enough.set()
         if job is not None and not job.cancel():
@@ -137,8 +148,16 @@ class Worker:
             if late or (step.rests and self._asked == asked) or step.report.status is Status.NOT_FINITE:
                 return
 
+    def _prepared(self) -> FoldModel | None:
+        """The model; at first that of the earlier worker, moved to where this one begins."""
+        earlier, self._earlier = self._earlier, None
+        model = None if earlier is None else earlier._prepared()
+        if model is not None:
+            self._model = model.again(self._positions)
+        return self._model
+
     def _step(self, inputs: Inputs, iterations: int, measured: bool = False) -> Step:
-        model, told = self._model, self._told
+        model, told = self._prepared(), self._told
         if model is None or model.weights != inputs.weights:
             model = self._model = FoldModel(
                 self._net, self._positions if model is None else model.positions, inputs.weights
@@ -168,6 +187,7 @@ class Worker:
             tuple(in_users_words(f.sentence, self._net.crease_labels) for f in model.findings) if over else (),
             self._refused,
             (now - begin) / max(1, report.iterations),
+            model.flow_progress,
         )
 
 

@@ -20,8 +20,10 @@ class Bake(OnPaper, bpy.types.Operator):
         scene, mesh = context.scene, paper.data
         if paper.mode != "OBJECT":
             return self.refuse("Leave Edit Mode before baking")
+        if baking.is_baked(mesh):
+            return self.refuse("The paper is baked already; free its bake first")
         if mesh.shape_keys is not None:
-            return self.refuse("The paper has shape keys already; free its bake first")
+            return self.refuse("The paper has shape keys of its own; remove them first")
         if not mesh.curvefold.live:
             return self.refuse("The paper is not live, so there is nothing to bake")
         live.make_session(paper)  # before anything is changed: a paper that cannot be read stays as it is

@@ -16,7 +16,7 @@ class Flatten(OnPaper, bpy.types.Operator):
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
-        live.check_not_edited(paper.data)
+        live.check_writable(paper.data)
         live.make_session(paper)  # before anything is changed: a paper that cannot be read stays as it is
         handle_making.lay_flat(paper)
         live.flatten(paper)

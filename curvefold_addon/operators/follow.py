@@ -13,7 +13,14 @@ from .. import live, preferences
 #: Between two ticks, seconds: the view is drawn in between.
 INTERVAL = 1 / 60
 
+#: Seconds in which a timer of a hundredth comes for certain, once Blender looks at events again.
+SWEEP = 0.05
+
 _running = False
+_timer: bpy.types.Timer | None = None
+#: Whether no dead handler of this operator can be left in the window; the timer that sees to it.
+_swept = False
+_broom: bpy.types.Timer | None = None
 
 
 class Follow(bpy.types.Operator):
@@ -23,14 +30,13 @@ class Follow(bpy.types.Operator):
     bl_label = "Follow Handles"
     bl_options: ClassVar[set[str]] = {"INTERNAL"}
 
-    _timer = None
     _ended = 0.0
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        global _running
+        global _running, _timer
         if _running:
             return {"CANCELLED"}
-        self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
+        _timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
         context.window_manager.modal_handler_add(self)
         _running = True
         return {"RUNNING_MODAL"}
@@ -50,11 +56,16 @@ class Follow(bpy.types.Operator):
         return {"FINISHED", "PASS_THROUGH"}
 
     def cancel(self, context: bpy.types.Context) -> None:
-        global _running
-        _running = False
-        if self._timer is not None:
-            context.window_manager.event_timer_remove(self._timer)
-            self._timer = None
+        stop(context.window_manager)
+
+
+def stop(manager: bpy.types.WindowManager) -> None:
+    """Leaves nothing of the running operator behind."""
+    global _running, _timer
+    _running = False
+    if _timer is not None:
+        manager.event_timer_remove(_timer)
+        _timer = None
 
 
 def is_transforming(manager: bpy.types.WindowManager) -> bool:
@@ -72,12 +83,39 @@ def start() -> None:
         bpy.app.timers.register(_begin, first_interval=0.0)
 
 
-def _begin() -> None:
-    windows = bpy.context.window_manager.windows
-    if live.is_at_work() and not _running and len(windows):
-        # A timer has no window of its own.
-        with bpy.context.temp_override(window=windows[0]):
-            bpy.ops.curvefold.follow("INVOKE_DEFAULT")
+def _begin() -> float | None:
+    manager = bpy.context.window_manager
+    if not live.is_at_work() or _running or not len(manager.windows):
+        return None
+    # A timer has no window of its own.
+    window = manager.windows[0]
+    if not _is_swept(manager, window):
+        return SWEEP
+    with bpy.context.temp_override(window=window):
+        bpy.ops.curvefold.follow("INVOKE_DEFAULT")
+    return None
+
+
+def _is_swept(manager: bpy.types.WindowManager, window: bpy.types.Window) -> bool:
+    """Whether an operator can be added to the window's; if not, an event is sent to make it so.
+
+    Where this one was running when the extension was disabled, Blender keeps a dead handler until the next event
+    and crashes (4.3.2) when another is added before.
+    """
+    global _swept, _broom
+    if not _swept and _broom is None:
+        _broom = manager.event_timer_add(0.01, window=window)
+        return False
+    _sweep_away(manager)
+    _swept = True
+    return True
+
+
+def _sweep_away(manager: bpy.types.WindowManager) -> None:
+    global _broom
+    if _broom is not None:
+        manager.event_timer_remove(_broom)
+        _broom = None
 
 
 def register() -> None:
@@ -86,7 +124,13 @@ def register() -> None:
 
 
 def unregister() -> None:
+    global _swept
+    _swept = False
     live.on_start(None)
     if bpy.app.timers.is_registered(_begin):
         bpy.app.timers.unregister(_begin)
+    # Blender drops a running operator whose class goes away, and does not tell it.
+    for manager in bpy.data.window_managers:
+        stop(manager)
+        _sweep_away(manager)
     bpy.utils.unregister_class(Follow)

@@ -5,6 +5,7 @@ from typing import ClassVar
 import bpy
 
 from .. import handle_making, live
+from ..drawing_context import select_only
 from .add_handles import leave_edit_mode, selected_points
 from .on_paper import OnPaper
 
@@ -25,12 +26,15 @@ class Pin(OnPaper, bpy.types.Operator):
                 handle_making.add_handle(paper, point)
         elif paper.mode == "EDIT":
             return self.refuse("Select vertices of the paper first")
-        elif settings.active_handle < len(settings.handles):
-            handle = settings.handles[settings.active_handle]
+        elif settings.chosen_handle < len(settings.handles):
+            handle = settings.handles[settings.chosen_handle]
             place = live.make_session(paper).place_of(tuple(handle.at))
-            handle.hook = None
+            hook, handle.hook = handle.hook, None
             handle.pinned = True
             handle.offset = place
+            if hook is not None and hook == context.view_layer.objects.active:
+                select_only(context, paper)
+            handle_making.drop_empty(hook)
         else:
             return self.refuse("Select vertices of the paper in Edit Mode first")
         handle_making.go_on(paper)

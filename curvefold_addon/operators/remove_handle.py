@@ -27,7 +27,7 @@ class RemoveHandle(OnPaper, bpy.types.Operator):
 
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
         settings = paper.data.curvefold
-        index = settings.active_handle if self.index < 0 else self.index
+        index = settings.chosen_handle if self.index < 0 else self.index
         if index >= len(settings.handles):
             return self.refuse("The paper has no such handle")
         active = context.view_layer.objects.active

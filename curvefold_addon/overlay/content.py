@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import bpy
 
 from .. import live
-from ..bridge import baking
+from ..bridge import baking, mesh_overlay
 from ..bridge import overlay as arrays
 
 #: A shape is at rest, and worth finding rulings for, when it is the same after this many seconds.
@@ -31,19 +31,33 @@ class _Kept:
     asked: float = 0.0
 
 
+@dataclass
+class _KeptMesh:
+    """Of a mesh nobody works on. counts: of its parts; played: its shape keys and their time, if it has any."""
+
+    counts: tuple[int, int, int, int]
+    parts: mesh_overlay.MeshParts | None
+    shape: mesh_overlay.MeshShape | None = None
+    played: tuple[int, float] | None = None
+
+
 @dataclass(frozen=True)
 class PaperContent:
-    """What is drawn over one paper, in the coordinates of ``paper``; None: switched off, or not there yet."""
+    """What is drawn over one paper, in the coordinates of ``paper``; None: switched off, or not there yet.
+
+    pulls: of handles, of joints, and of angles at points
+    """
 
     paper: bpy.types.Object
     creases: arrays.Lines | None
     stretch: arrays.Surface | None
     rulings: arrays.Lines | None
-    pulls: arrays.Pulls | None
+    pulls: tuple[arrays.Pulls, ...]
     angles: tuple[arrays.Label, ...]
 
 
 _kept: dict[int, _Kept] = {}
+_meshes: dict[int, _KeptMesh] = {}
 _finder: arrays.RulingFinder | None = None
 
 
@@ -58,11 +72,11 @@ def papers(context: bpy.types.Context) -> Iterator[bpy.types.Object]:
 
 
 def of_paper(paper: bpy.types.Object, settings: bpy.types.PropertyGroup) -> PaperContent | None:
-    """What ``settings`` ask to be drawn over a paper. None while it has no shape of its own."""
+    """What ``settings`` ask to be drawn over a paper. None when its mesh is no longer that of a paper."""
     mesh = paper.data
     session = live.session(mesh)
     if session is None or baking.is_baked(mesh):
-        return None
+        return _of_mesh(paper, settings)
     kept = _kept.get(mesh.session_uid)
     if kept is None or not kept.shape.is_of(session.net, session.positions):
         shape = arrays.PaperShape(session.net, session.positions)
@@ -80,7 +94,39 @@ def of_paper(paper: bpy.types.Object, settings: bpy.types.PropertyGroup) -> Pape
         shape.creases() if settings.creases else None,
         shape.stretch(kept.triangles) if settings.stretch else None,
         _rulings(kept) if settings.rulings else None,
-        shape.pulls(inputs.handles) if settings.pulls and inputs is not None else None,
+        (shape.pulls(inputs.handles), shape.joints(inputs.controls), shape.asked_angles(inputs.controls))
+        if settings.pulls and inputs is not None
+        else (),
+        shape.angles() if settings.angles else (),
+    )
+
+
+def _of_mesh(paper: bpy.types.Object, settings: bpy.types.PropertyGroup) -> PaperContent | None:
+    """The same of a paper that is baked or that nobody works on, as far as its mesh shows it."""
+    mesh = paper.data
+    if not (settings.creases or settings.stretch or settings.angles):
+        return None
+    kept = _meshes.get(mesh.session_uid)
+    if kept is None or kept.counts != mesh_overlay.counts(mesh):
+        _forget_the_dead()
+        parts = mesh_overlay.parts_of(mesh, arrays.shown_triangles(mesh))
+        kept = _meshes[mesh.session_uid] = _KeptMesh(mesh_overlay.counts(mesh), parts)
+    if kept.parts is None:
+        return None
+    keys = mesh.shape_keys
+    played = None if keys is None else (keys.session_uid, keys.eval_time)
+    if kept.shape is None or played is None or played != kept.played:
+        positions = mesh_overlay.shown_positions(mesh)
+        if kept.shape is None or not mesh_overlay.same(positions, kept.shape.positions):
+            kept.shape = mesh_overlay.MeshShape(kept.parts, positions)
+        kept.played = played
+    shape = kept.shape
+    return PaperContent(
+        paper,
+        shape.creases() if settings.creases else None,
+        shape.stretch() if settings.stretch else None,
+        None,
+        (),
         shape.angles() if settings.angles else (),
     )
 
@@ -89,6 +135,7 @@ def forget() -> None:
     """Drops everything that is kept."""
     global _finder
     _kept.clear()
+    _meshes.clear()
     if bpy.app.timers.is_registered(_look_for_rulings):
         bpy.app.timers.unregister(_look_for_rulings)
     if _finder is not None:
@@ -98,13 +145,14 @@ def forget() -> None:
 
 def is_kept(uid: int) -> bool:
     """Whether something is kept for the mesh with this ``session_uid``."""
-    return uid in _kept
+    return uid in _kept or uid in _meshes
 
 
 def _forget_the_dead() -> None:
     alive = {mesh.session_uid for mesh in bpy.data.meshes}
-    for uid in [uid for uid in _kept if uid not in alive]:
-        del _kept[uid]
+    for kept in (_kept, _meshes):
+        for uid in [uid for uid in kept if uid not in alive]:
+            del kept[uid]
 
 
 def _rulings(kept: _Kept) -> arrays.Lines | None:

@@ -107,9 +107,9 @@ def _draw_paper(context: bpy.types.Context, drawn: content.PaperContent) -> None
             if drawn.creases is not None:
                 gpu.state.depth_test_set("GREATER")
                 _draw_lines(context, (uid, "behind"), drawn.creases, CREASE_WIDTH, BEHIND)
-            if drawn.pulls is not None:
-                gpu.state.depth_test_set("NONE")
-                _draw_lines(context, (uid, "pulls"), drawn.pulls.lines, PULL_WIDTH)
+            gpu.state.depth_test_set("NONE")
+            for k, pulls in enumerate(drawn.pulls):
+                _draw_lines(context, (uid, f"pulls {k}"), pulls.lines, PULL_WIDTH)
     finally:
         gpu.state.depth_test_set("NONE")
         gpu.state.depth_mask_set(True)
@@ -182,9 +182,9 @@ def _draw_on_screen(context: bpy.types.Context) -> None:
 
 def _draw_marks(context: bpy.types.Context, drawn: content.PaperContent) -> None:
     matrix = drawn.paper.matrix_world
-    if drawn.pulls is not None:
-        places = [_on_screen(context, matrix @ Vector(point)) for point in drawn.pulls.points]
-        _draw_diamonds(context, places, MARK_RADIUS, arrays.PULL)
+    for pulls in drawn.pulls:
+        places = [_on_screen(context, matrix @ Vector(point)) for point in pulls.points]
+        _draw_diamonds(context, places, MARK_RADIUS, pulls.color)
     for label in drawn.angles:
         place = _on_screen(context, matrix @ Vector(label.place))
         if place is not None:

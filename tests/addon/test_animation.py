@@ -210,6 +210,34 @@ def test_free_bake_gives_the_live_paper_back(folding, scene, live):
     assert len(set(first)) == 6
 
 
+@pytest.mark.parametrize("operator", ["settle", "flatten"])
+def test_what_shape_keys_would_hide_is_not_done(folding, operator):
+    mesh = folding.data
+    bpy.ops.curvefold.bake()
+    mesh.curvefold.resolution += 4
+    frames = [np.array([point.co[:] for point in block.data]) for block in mesh.shape_keys.key_blocks]
+    with pytest.raises(RuntimeError, match="is baked; free the bake"):
+        getattr(bpy.ops.curvefold, operator)()
+    assert len(mesh.vertices) == len(frames[0]), "the bake fits its mesh"
+    bpy.ops.curvefold.free_bake()
+    folding.shape_key_add(name="Mine")
+    with pytest.raises(RuntimeError, match="has shape keys, which hide how it folds"):
+        getattr(bpy.ops.curvefold, operator)()
+
+
+def test_a_live_paper_with_shape_keys_of_its_own_waits_until_they_are_gone(folding, live):
+    mesh = folding.data
+    folding.shape_key_add(name="Mine")
+    kept = shape(mesh)
+    mesh.curvefold.fold = 80.0
+    assert any(not live.tick(0.02) for _ in range(1000))
+    assert shape(mesh) == kept
+    folding.shape_key_clear()
+    bpy.context.view_layer.update()
+    assert any(not live.tick(0.02) for _ in range(3000))
+    assert shape(mesh) != kept
+
+
 def test_baking_says_why_it_cannot(folding):
     bpy.ops.object.mode_set(mode="EDIT")
     with pytest.raises(RuntimeError, match="Leave Edit Mode"):
@@ -218,9 +246,13 @@ def test_baking_says_why_it_cannot(folding):
     with pytest.raises(RuntimeError, match="not baked"):
         bpy.ops.curvefold.free_bake()
     bpy.ops.curvefold.bake()
-    with pytest.raises(RuntimeError, match="shape keys already"):
+    with pytest.raises(RuntimeError, match="baked already"):
         bpy.ops.curvefold.bake()
     bpy.ops.curvefold.free_bake()
+    folding.shape_key_add(name="Mine")
+    with pytest.raises(RuntimeError, match="shape keys of its own"):
+        bpy.ops.curvefold.bake()
+    folding.shape_key_clear()
     folding.data.curvefold.live = False
     with pytest.raises(RuntimeError, match="not live"):
         bpy.ops.curvefold.bake()

@@ -1,11 +1,9 @@
 """Creases with sides, amounts and angles of their own."""
 
-from types import SimpleNamespace
-
 import bpy
 import numpy as np
 import pytest
-from mathutils import Matrix, Vector
+from mathutils import Vector
 
 #: Two arcs that curve the same way, far enough apart to fold by themselves.
 ARCS = """<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100">
@@ -322,30 +320,16 @@ def test_weights_are_the_solvers_until_they_are_changed(folded, extension, live)
 # --- picking --------------------------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def picking(extension):
-    return extension("curvefold_addon.operators.pick_crease")
-
-
-def test_a_ray_picks_the_crease_nearest_to_where_it_meets_the_paper(picking, folded, live):
-    paper = folded
-    paper.matrix_world = Matrix.Translation((1, 2, 3)) @ Matrix.Rotation(0.7, 4, (1, 0, 1)) @ Matrix.Scale(2, 4)
-    bpy.context.view_layer.update()
-    normal = (paper.matrix_world.to_3x3() @ Vector((0, 0, 1))).normalized()
+def test_a_ray_picks_the_crease_nearest_to_where_it_meets_the_paper(extension, folded, live):
+    clicks = extension("curvefold_addon.operators.click_on_crease")
+    picking = extension("curvefold_addon.operators.pick_crease")
     picked = []
-    for y in (-0.045, 0.045):
-        world = paper.matrix_world @ Vector(live.session(paper.data).place_of((0.0, y)))
-        assert picking.pick_along(paper, world + normal, -normal)
-        picked.append(creases(paper)[paper.data.curvefold.active_crease].name)
-    assert picked == ["Top", "Bottom"]
-    assert not picking.pick_along(paper, Vector((99, 99, 99)), -normal)
-
-
-def test_picking_begins_only_in_a_3d_view(picking):
-    said = []
-    operator = SimpleNamespace(refuse=said.append)
-    picking.PickCrease.invoke(operator, SimpleNamespace(area=None), None)
-    assert said == ["Creases are picked in a 3D view"]
+    for y in (0.045, -0.045):
+        origin = Vector(live.session(folded.data).place_of((0.0, y))) + Vector((0, 0, 1))
+        point = clicks.crease_along(folded, origin, Vector((0, 0, -1)))
+        picking.PickCrease.clicked(None, folded, point)
+        picked.append(creases(folded)[folded.data.curvefold.active_crease].name)
+    assert picked == ["Bottom", "Top"]
 
 
 # --- from the command line ------------------------------------------------------------------------------------
@@ -359,6 +343,7 @@ def test_the_controls_of_a_finished_fold_are_settings_of_its_paper(extension, li
         solver.Amount(1, 0.5),
         solver.Side("Bottom", "M"),
         solver.Angle(-20.0, crease="Top", signed=True),
+        solver.Angle(-25.0, at=(50.0, 25.0), signed=True, strength=2.0),
         solver.Pair((0.0, 0.0), (100.0, 0.0), distance=99.0),
         solver.Pair((0.0, 100.0), (100.0, 100.0), axes=(False, False, True)),
     )
@@ -372,6 +357,9 @@ def test_the_controls_of_a_finished_fold_are_settings_of_its_paper(extension, li
     bottom, top = creases(paper)
     assert (bottom.side, bottom.amount, top.signed) == ("M", 50.0, True)
     assert np.degrees(top.angle) == pytest.approx(-20.0)
+    (angle,) = paper.data.curvefold.angles
+    assert (angle.name, angle.signed, angle.strength) == ("Angle 1", True, 2.0)
+    assert (*angle.at, np.degrees(angle.angle)) == pytest.approx((0.05, 0.025, -25.0))
     assert [joint.relation for joint in paper.data.curvefold.joints] == ["DISTANCE", "SHARE"]
     assert again.weights == weights
     pair = next(control for control in again.controls if control.kind == "pair")

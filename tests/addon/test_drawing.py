@@ -420,8 +420,32 @@ def sentences(drawing_module, sheet):
     return [trouble.sentence for trouble in drawing_module.troubles(sheet)]
 
 
-def test_no_crease(drawing_module, square):
-    assert sentences(drawing_module, square) == ["Sheet: it has no crease yet, so there is nothing to fold"]
+def test_a_sheet_on_which_nobody_has_drawn_yet_is_no_trouble(drawing_module, square):
+    assert sentences(drawing_module, square) == []
+
+
+def test_a_drawing_of_flat_creases_only(drawing_module, square, add_crease):
+    crease = add_crease(arc, assignment="F")
+    assert sentences(drawing_module, square) == ["Sheet: all its creases are Flat, so there is nothing to fold"]
+    crease.curvefold.assignment = "U"
+    assert sentences(drawing_module, square) == []
+
+
+def test_an_empty_crease_is_no_trouble_while_it_is_drawn(extension, drawing_module, square, add_crease):
+    marks = extension("curvefold_addon.overlay.trouble_marks")
+    crease = add_crease(lambda curve: None, "Empty")
+    bpy.context.view_layer.objects.active = crease
+
+    def said():
+        bpy.context.view_layer.update()
+        return [trouble.sentence for trouble in marks.of_sheet(square)]
+
+    empty = ["Empty: it is empty: draw a curve in it, or delete it"]
+    assert said() == empty
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert said() == []
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert said() == empty
 
 
 def test_a_good_drawing_has_no_trouble(drawing_module, square, add_crease):

@@ -165,6 +165,45 @@ def test_closed_and_many_curves_are_refused_and_lost_ones_named(paper, live):
     assert "choose a curve" in live.report(paper.data).sentence
 
 
+def test_speed_says_how_fast_it_goes_and_progress_how_far_it_is(paper, live):
+    assert live.crease_report(paper.data, 0).progress is None
+    flow = crease(paper)
+    flow.flow, flow.curvature_times, flow.flow_speed, flow.progress = "SHAPE", 1.3, 0.25, 80.0
+    gone = {}
+    for speed in (0.25, 1.0):
+        bpy.ops.curvefold.flatten()
+        flow.flow_speed = speed
+        live.settle(paper.data, max_iterations=15)
+        gone[speed] = live.crease_report(paper.data, 0).progress
+    assert 0.0 < gone[0.25] < 0.5 * gone[1.0] < 0.4
+    live.settle(paper.data)
+    assert live.crease_report(paper.data, 0).progress == pytest.approx(0.8)
+    reached = fold_angle(live, paper)
+    flow.flow_speed = 4.0
+    live.settle(paper.data)
+    assert fold_angle(live, paper) == pytest.approx(reached, abs=1.0), "speed is no place to go to"
+    assert live.crease_report(paper.data, 0).progress == pytest.approx(0.8)
+    live.session(paper.data).lay_flat()
+    assert live.crease_report(paper.data, 0).progress is None, "of another shape nothing is known yet"
+
+
+def test_a_stronger_curve_outdoes_a_handle(extension, paper, live):
+    """The crease is given a curve where it lies, and a pin lifts one of its points."""
+    target = add_curve(sharper(paper, 1.3))
+    flow = crease(paper)
+    flow.flow, flow.curve = "OBJECT", target
+    live.settle(paper.data)
+    handle = paper.data.curvefold.handles.add()
+    x, y, z = crease_points(paper)[len(crease_points(paper)) // 2].tolist()
+    handle.at, handle.offset, handle.pinned = (0.0, y), (x, y, z + 0.01), True
+    height = {}
+    for strength in (0.02, 20.0):
+        flow.flow_strength = strength
+        live.settle(paper.data)
+        height[strength] = np.abs(crease_points(paper)[:, 2]).max()
+    assert height[20.0] < 0.5 * height[0.02]
+
+
 def test_a_keyframed_progress_plays_the_same_each_time(paper, live):
     scene = bpy.context.scene
     scene.frame_start, scene.frame_end = 1, 4
@@ -186,6 +225,40 @@ def test_a_keyframed_progress_plays_the_same_each_time(paper, live):
     assert play() == first
     live.forget()
     assert play() == first
+
+
+def test_undo_and_files_keep_the_flow(paper, live, tmp_path):
+    flow = crease(paper)
+    flow.flow, flow.curvature_times, flow.flow_speed, flow.flow_strength = "SHAPE", 1.3, 2.0, 3.0
+    live.settle(paper.data)
+    name, before = paper.name, shape(paper.data)
+    bpy.ops.ed.undo_push(message="flows")
+    flow.progress = 30.0
+    live.settle(paper.data)
+    bpy.ops.ed.undo_push(message="less")
+    assert shape(paper.data) != before
+    bpy.ops.ed.undo()
+    paper = bpy.data.objects[name]
+    assert crease(paper).progress == 100.0
+    assert shape(paper.data) == before
+    assert rests(live, paper)
+    path = str(tmp_path / "flow.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    paper = bpy.data.objects[name]
+    assert (crease(paper).flow, crease(paper).flow_speed, crease(paper).flow_strength) == ("SHAPE", 2.0, 3.0)
+    assert rests(live, paper)
+    assert shape(paper.data) == before
+
+
+def test_a_flatter_shape_than_the_drawn_one_is_refused_in_words(paper, live):
+    flow = crease(paper)
+    flow.flow, flow.curvature_times = "SHAPE", 0.5
+    live.settle(paper.data)
+    report = live.report(paper.data)
+    assert report.state == "trouble"
+    assert "Crease 1 would be flatter in space than it is drawn" in report.sentence
+    assert np.ptp(live.session(paper.data).positions[:, 2]) == 0.0
 
 
 def test_an_animated_curve_counts_as_motion(extension, paper, live):

@@ -1,5 +1,6 @@
 """The operator that ticks: it begins when there is something to do, ends when there is not, and cleans up."""
 
+from contextlib import nullcontext
 from types import SimpleNamespace
 
 import bpy
@@ -37,9 +38,10 @@ def running(follow, live, monkeypatch):
     manager, ticks = Manager(), []
     context = SimpleNamespace(window_manager=manager, window=None)
     cls = follow.Follow
-    operator = SimpleNamespace(_timer=None, _ended=0.0)
+    operator = SimpleNamespace(_ended=0.0)
     operator.cancel = lambda c: cls.cancel(operator, c)
     monkeypatch.setattr(follow, "_running", False)
+    monkeypatch.setattr(follow, "_timer", None)
     # Every event comes when a tick is due.
     monkeypatch.setattr(follow.time, "monotonic", iter(range(1, 10_000)).__next__)
     more = [True]
@@ -116,6 +118,18 @@ def test_cancelled_from_outside_it_leaves_no_timer_and_can_begin_again(running, 
     assert send.invoke() == {"RUNNING_MODAL"}
 
 
+def test_disabled_in_mid_run_it_leaves_no_timer_and_can_begin_again(running, follow, monkeypatch):
+    send, manager, _, _ = running
+    app = SimpleNamespace(
+        app=bpy.app, utils=bpy.utils, data=SimpleNamespace(window_managers=[manager]), types=bpy.types, ops=bpy.ops
+    )
+    monkeypatch.setattr(follow, "bpy", app)
+    follow.unregister()
+    follow.register()
+    assert (manager.timers, follow._running) == ([], False)
+    assert send.invoke() == {"RUNNING_MODAL"}
+
+
 def test_begins_by_a_timer_only_once(follow, monkeypatch):
     monkeypatch.setattr(follow, "_running", False)
     follow.start()
@@ -125,6 +139,22 @@ def test_begins_by_a_timer_only_once(follow, monkeypatch):
     monkeypatch.setattr(follow, "_running", True)
     follow.start()
     assert not bpy.app.timers.is_registered(follow._begin)
+
+
+def test_the_first_beginning_waits_for_an_event_that_sweeps_out_dead_handlers(follow, live, monkeypatch):
+    manager, begun = Manager(), []
+    context = SimpleNamespace(window_manager=manager, temp_override=lambda window: nullcontext())
+    operators = SimpleNamespace(curvefold=SimpleNamespace(follow=begun.append))
+    monkeypatch.setattr(follow, "bpy", SimpleNamespace(context=context, ops=operators))
+    monkeypatch.setattr(live, "is_at_work", lambda: True)
+    for name, value in (("_running", False), ("_swept", False), ("_broom", None)):
+        monkeypatch.setattr(follow, name, value)
+    assert follow._begin() == follow.SWEEP, "comes again"
+    assert (len(manager.timers), begun) == (1, [])
+    assert follow._begin() is None
+    assert (manager.timers, begun) == ([], ["INVOKE_DEFAULT"])
+    assert follow._begin() is None
+    assert (manager.timers, len(begun)) == ([], 2), "once is enough"
 
 
 def test_without_a_window_nothing_is_started(paper, follow):

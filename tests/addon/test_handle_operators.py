@@ -237,16 +237,103 @@ def test_pinned_vertices_stay(folded_paper, live):
 
 def test_the_active_handle_is_pinned_where_it_is(placing, folded_paper, live):
     paper = folded_paper
-    empty = placing.place_along(bpy.context, paper, Vector((0.0, 0.02, 1)), Vector((0, 0, -1)))
+    placing.place_along(bpy.context, paper, Vector((0.0, 0.02, 1)), Vector((0, 0, -1)))
     handle = handles(paper)[0]
     place = live.session(paper.data).place_of(tuple(handle.at))
     assert bpy.ops.curvefold.pin() == {"FINISHED"}
     assert (handle.hook, handle.pinned) == (None, True)
     assert tuple(handle.offset) == pytest.approx(place, abs=1e-5)
-    before = positions(paper.data)
-    empty.location.z += 1.0
-    live.settle(paper.data)
-    assert np.array_equal(positions(paper.data), before)
+    assert tuple(handle.offset) == pytest.approx(live.session(paper.data).place_of(tuple(handle.at)), abs=1e-5)
+    assert "Handle 1" not in bpy.data.objects, "its empty would be a handle that pulls nothing"
+    assert bpy.context.active_object == paper
+
+
+def test_an_object_of_ones_own_stays_when_its_handle_is_pinned(folded_paper):
+    paper, mine = folded_paper, loose_empty((0.03, 0.04, 0.0))
+    mine.select_set(True)
+    bpy.context.view_layer.objects.active = paper
+    bpy.ops.curvefold.hook_object()
+    bpy.context.view_layer.objects.active = mine
+    assert bpy.ops.curvefold.pin() == {"FINISHED"}
+    assert bpy.data.objects["Mine"] == mine
+    assert bpy.context.active_object == paper
+
+
+# --- choosing -------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def two(placing, paper):
+    """(settings, the empties of two handles); the second was placed last."""
+    places = ((0.0, 0.03, 1), (0.0, -0.03, 1))
+    empties = [placing.place_along(bpy.context, paper, Vector(at), Vector((0, 0, -1))) for at in places]
+    return paper.data.curvefold, empties
+
+
+def test_the_list_follows_the_selection(two, paper):
+    settings, (first, _) = two
+    assert settings.chosen_handle == 1
+    bpy.context.view_layer.objects.active = first
+    assert settings.chosen_handle == 0
+    bpy.context.view_layer.objects.active = paper
+    assert settings.chosen_handle == 1, "the last one that was chosen in the list"
+    bpy.context.view_layer.objects.active = None
+    assert settings.chosen_handle == 1
+
+
+def test_the_selection_follows_the_list(two, paper, live):
+    settings, (first, _) = two
+    live.tick(0.02)
+    assert not live.is_at_work()
+    settings.chosen_handle = 0
+    assert (bpy.context.active_object, bpy.context.selected_objects) == (first, [first])
+    assert settings.chosen_handle == 0
+    settings.handles[1].hook = None
+    settings.chosen_handle = 1
+    assert bpy.context.active_object == paper, "nothing pulls a pin"
+    first.hide_set(True)
+    settings.chosen_handle = 0
+    assert bpy.context.active_object == paper, "nor can be selected what is hidden"
+    settings.chosen_handle = 7
+    assert bpy.context.active_object == paper
+
+
+def test_choosing_leaves_edit_mode_alone(two, paper):
+    settings, _ = two
+    select_vertices(paper)
+    settings.chosen_handle = 0
+    assert (settings.chosen_handle, bpy.context.active_object, bpy.context.mode) == (0, paper, "EDIT_MESH")
+
+
+def test_several_handles_of_one_empty_can_each_be_chosen(paper):
+    select_vertices(paper, (0.0, 0.03), (0.03, 0.03))
+    bpy.ops.curvefold.add_handles()
+    settings = paper.data.curvefold
+    for index in (0, 1, 0):
+        settings.chosen_handle = index
+        assert settings.chosen_handle == index
+        assert bpy.context.active_object == settings.handles[0].hook
+
+
+def test_choosing_can_be_undone_with_what_it_selected(two):
+    settings, _ = two
+    name = settings.id_data.name
+    bpy.ops.ed.undo_push(message="two handles")
+    settings.chosen_handle = 0
+    bpy.ops.ed.undo_push(message="chosen")
+    bpy.ops.ed.undo()
+    settings = bpy.data.meshes[name].curvefold
+    assert (settings.chosen_handle, bpy.context.active_object.name) == (1, "Handle 2")
+    bpy.ops.ed.redo()
+    settings = bpy.data.meshes[name].curvefold
+    assert (settings.chosen_handle, bpy.context.active_object.name) == (0, "Handle 1")
+
+
+def test_the_handle_of_the_selected_empty_is_removed(two):
+    settings, (first, _) = two
+    bpy.context.view_layer.objects.active = first
+    bpy.ops.curvefold.remove_handle()
+    assert [handle.name for handle in settings.handles] == ["Handle 2"]
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,9 @@
 """Papers that follow: ticks without an event loop, and what Blender does to datablocks in between."""
 
 import gc
+import sys
 import tracemalloc
+from threading import Event
 
 import bpy
 import numpy as np
@@ -306,6 +308,43 @@ def test_a_cancelled_drag_gives_back_every_bit(held, live):
     assert live.report(paper.data).state == "settled"
 
 
+def test_a_cancelled_drag_waits_for_no_running_iteration(extension, held, live, monkeypatch):
+    paper, empty = held
+    before, start = shape(paper.data), empty.location.copy()
+    bpy.ops.ed.undo_push(message="before the drag")
+    model = extension("curvefold_addon.bridge.worker").FoldModel
+    begun, goes_on, ended = Event(), Event(), Event()
+    advance = model.advance
+
+    def slow(*arguments):
+        begun.set()
+        assert goes_on.wait(30.0), "nobody waits for it"
+        report = advance(*arguments)
+        ended.set()
+        return report
+
+    empty.location.z += 0.005
+    bpy.context.view_layer.update()
+    live.tick(0.02, transforming=True)
+    with monkeypatch.context() as patch:
+        patch.setattr(model, "advance", slow)
+        live.tick(0.0, transforming=True)
+        assert begun.wait(30.0)
+        empty.location = start
+        bpy.context.view_layer.update()
+        assert not live.tick(0.0)
+        assert not ended.is_set()
+        assert shape(paper.data) == before
+        empty.location.z += 0.003
+        bpy.context.view_layer.update()
+        assert live.tick(0.0)
+        goes_on.set()
+        tick_until_rest(live)
+    assert live.report(paper.data).state == "settled"
+    reached = live.session(paper.data).place_of(tuple(paper.data.curvefold.handles[2].at))
+    assert reached == pytest.approx(tuple(empty.location), abs=0.0015)
+
+
 def test_passing_the_start_in_a_drag_is_no_cancelling(held, live):
     paper, empty = held
     before, start = shape(paper.data), empty.location.copy()
@@ -484,6 +523,28 @@ def test_a_file_saved_in_mid_motion_goes_on_when_it_is_opened(held, live, tmp_pa
     tick_until_rest(live)
     assert shape(bpy.data.objects[name].data) != middle
     assert live.report(bpy.data.objects[name].data).state == "settled"
+
+
+@pytest.mark.parametrize("in_motion", [True, False])
+def test_enabled_again_it_goes_on_and_moves_nothing_that_rests(extension, held, live, in_motion):
+    paper, empty = held
+    if in_motion:
+        empty.location.z += 0.006
+        bpy.context.view_layer.update()
+        live.tick(0.0)
+        live.tick(0.02)
+    before = shape(paper.data)
+    addon = sys.modules[extension("solver").__name__.rpartition(".")[0]]
+    addon.unregister()
+    assert not live.is_at_work()
+    addon.register()
+    handlers = extension("curvefold_addon.handlers")
+    assert bpy.app.timers.is_registered(handlers._enabled)
+    assert handlers._enabled() is None, "once is enough"
+    assert live.is_at_work()
+    tick_until_rest(live)
+    assert (shape(paper.data) != before) is in_motion
+    assert live.report(paper.data).state == "settled"
 
 
 def test_a_copy_is_a_paper_of_its_own(held, live):

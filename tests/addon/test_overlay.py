@@ -168,6 +168,53 @@ def test_a_handle_that_is_there_or_free_along_the_way_has_a_point_but_no_line(ex
     assert end[0] == pytest.approx(0.0, abs=1e-5)
 
 
+def test_joined_points_have_a_line_between_them_until_they_meet(arrays, extension, shape, folded):
+    solver = extension("solver")
+    first, second, third = (30.0, 20.0), (70.0, 20.0), (50.0, 10.0)
+
+    def place(at):
+        vertices, weights = folded.net.locate(at)
+        return weights @ folded.positions[vertices]
+
+    joints = shape.joints(
+        [
+            solver.Pair(first, second, distance=10.0),
+            solver.Pair(third, third),
+            solver.Pair((900.0, 0.0), first),
+            solver.Keep(first),
+        ]
+    )
+    assert joints.lines.points == pytest.approx(np.array([place(first), place(second)]), abs=1e-4)
+    assert colors_of(joints.lines) == {rounded(arrays.JOINT)}
+    assert joints.points == pytest.approx(np.array([place(p) for p in (first, second, third, third)]), abs=1e-4)
+    assert joints.color == arrays.JOINT not in (arrays.PULL, arrays.VALLEY, arrays.MOUNTAIN)
+
+
+def test_glued_borders_have_a_line_at_each_end(extension, shape, folded):
+    glue = extension("solver").Glue(((0.0, 0.0), (0.0, 40.0)), ((100.0, 0.0), (100.0, 40.0)))
+    joints = shape.joints([glue])
+    assert len(joints.lines.points) == 4
+    ends = joints.lines.points.reshape(2, 2, 3)
+    for k, y in enumerate((0.0, 40.0)):
+        vertices, weights = folded.net.locate((0.0, y))
+        assert ends[k, 0] == pytest.approx(weights @ folded.positions[vertices], abs=1e-4)
+    assert shape.joints([glue]) is joints
+    assert shape.joints([]) is not joints
+
+
+def test_an_angle_at_a_point_is_marked_on_its_crease(extension, arrays, shape, folded):
+    solver = extension("solver")
+    nearest = shape.measurement.crease_position[arrays.nearest_angle(folded.net, (50.0, 41.0))]
+    asked = [solver.Angle(60.0, at=(50.0, 41.0)), solver.Angle(60.0, at=(5.0, 5.0)), solver.Angle(60.0, crease=1)]
+    marks = shape.asked_angles(asked)
+    assert len(marks.lines.points) == 0
+    (point,) = marks.points
+    vertices, weights = folded.net.locate(tuple(nearest))
+    cell = 100.0 / 12
+    assert np.linalg.norm(point - weights @ folded.positions[vertices]) < 0.2 * cell
+    assert marks.color == arrays.ASKED_ANGLE
+
+
 # --- rulings ---------------------------------------------------------------------------------------------
 
 
@@ -206,6 +253,100 @@ def wait_for(look, seconds=60.0):
     raise AssertionError("nothing came")
 
 
+# --- papers that nobody works on -------------------------------------------------------------------------
+
+
+@pytest.fixture
+def seen(extension, content, paper, settings):
+    """What is drawn over the folded paper with its session, and after the session is gone."""
+    settings.angles = settings.stretch = True
+    with_session = content.of_paper(paper, settings)
+    extension("curvefold_addon.live").forget()
+    return with_session, content.of_paper(paper, settings)
+
+
+def test_without_a_session_creases_have_the_same_places_and_colours(seen):
+    def ends(lines):
+        points = np.round(lines.points.astype(float), 5).reshape(-1, 2, 3)
+        return {frozenset(map(tuple, pair)) for pair in points}
+
+    with_session, without = seen
+    assert ends(without.creases) == ends(with_session.creases)
+    assert colors_of(without.creases) == colors_of(with_session.creases)
+    assert (without.rulings, without.pulls) == (None, ())
+
+
+def test_without_a_session_angles_and_stretch_are_nearly_those_measured(arrays, seen):
+    with_session, without = seen
+    (label,) = without.angles
+    measured = [float(other.text[:-1]) for other in with_session.angles]
+    assert float(label.text[:-1]) == pytest.approx(np.median(measured), abs=2.0)
+    assert label.color == with_session.angles[0].color
+    assert min(np.linalg.norm(np.subtract(label.place, other.place)) for other in with_session.angles) < 0.03
+    assert without.stretch.points == pytest.approx(with_session.stretch.points, abs=1e-6)
+    difference = np.abs(without.stretch.colors - with_session.stretch.colors)
+    assert np.median(difference) < 0.05
+
+
+def test_a_mirrored_mesh_folds_to_the_other_side(extension, arrays, content, paper, settings, seen):
+    paper.data.transform(np.diag([1.0, 1.0, -1.0, 1.0]))
+    other = {rounded(arrays.VALLEY): arrays.MOUNTAIN, rounded(arrays.MOUNTAIN): arrays.VALLEY}
+    (before,) = colors_of(seen[1].creases)
+    assert colors_of(content.of_paper(paper, settings).creases) == {rounded(other[before])}
+
+
+def test_without_a_session_arrays_are_made_once_for_a_shape(content, paper, settings, seen):
+    again = content.of_paper(paper, settings)
+    assert again.creases is seen[1].creases
+    assert again.angles is seen[1].angles
+    paper.data.vertices[0].co.z += 0.001
+    assert content.of_paper(paper, settings).creases is not again.creases
+
+
+def test_a_mesh_without_its_marks_has_nothing_to_draw(content, paper, settings, seen):
+    paper.data.attributes.remove(paper.data.attributes["crease"])
+    content.forget()
+    assert content.of_paper(paper, settings) is None
+
+
+def test_only_what_is_switched_on_is_made_of_a_mesh(content, paper, settings, seen):
+    settings.creases = settings.angles = False
+    drawn = content.of_paper(paper, settings)
+    assert (drawn.creases, drawn.angles) == (None, ())
+    assert drawn.stretch is seen[1].stretch
+    settings.stretch = False
+    assert content.of_paper(paper, settings) is None
+
+
+def test_a_baked_paper_shows_the_creases_of_each_frame(content, paper, settings, monkeypatch):
+    """Also between frames, and with a modifier that has another mesh."""
+    scene = bpy.context.scene
+    scene.frame_end = 4
+    for frame, fold in ((1, 10.0), (4, 60.0)):
+        paper.data.curvefold.fold = fold
+        paper.data.curvefold.keyframe_insert("fold", frame=frame)
+    assert bpy.ops.curvefold.bake() == {"FINISHED"}
+    ends = content.mesh_overlay.parts_of(paper.data, content.arrays.shown_triangles(paper.data)).creases
+    drawn = {}
+    for frame, part in ((1, 0.0), (2, 0.5), (3, 0.0), (4, 0.0)):
+        scene.frame_set(frame, subframe=part)
+        drawn[frame] = content.of_paper(paper, settings).creases
+        played = paper.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+        shown = np.array([vertex.co[:] for vertex in played.vertices])
+        assert drawn[frame].points == pytest.approx(shown[ends].reshape(-1, 3), abs=1e-6)
+    assert np.abs(drawn[4].points - drawn[1].points).max() > 0.001
+    assert content.of_paper(paper, settings).creases is drawn[4]
+    paper.modifiers.new("Thick", "SOLIDIFY")
+    bpy.context.view_layer.update()
+    assert content.of_paper(paper, settings).creases is drawn[4]
+    monkeypatch.setattr(content.mesh_overlay, "shown_positions", lambda mesh: pytest.fail("read again"))
+    content.of_paper(paper, settings)
+    monkeypatch.undo()
+    assert content.is_kept(paper.data.session_uid)
+    assert bpy.ops.curvefold.free_bake() == {"FINISHED"}
+    assert content.of_paper(paper, settings).pulls, "the live paper again"
+
+
 # --- when ------------------------------------------------------------------------------------------------
 
 
@@ -214,7 +355,7 @@ def test_arrays_are_made_once_for_a_shape_and_anew_for_the_next(extension, conte
     first = content.of_paper(paper, settings)
     again = content.of_paper(paper, settings)
     assert first.creases is again.creases
-    assert first.pulls is again.pulls
+    assert all(one is other for one, other in zip(first.pulls, again.pulls, strict=True))
     paper.data.curvefold.fold = 20.0
     live.settle(paper.data)
     after = content.of_paper(paper, settings)
@@ -228,7 +369,7 @@ def test_only_what_is_switched_on_is_made(content, paper, settings):
     for name in ("creases", "angles", "rulings", "pulls", "stretch"):
         setattr(settings, name, False)
     drawn = content.of_paper(paper, settings)
-    assert (drawn.creases, drawn.stretch, drawn.rulings, drawn.pulls, drawn.angles) == (None, None, None, None, ())
+    assert (drawn.creases, drawn.stretch, drawn.rulings, drawn.pulls, drawn.angles) == (None, None, None, (), ())
     settings.stretch = settings.angles = True
     drawn = content.of_paper(paper, settings)
     assert drawn.creases is None
@@ -244,17 +385,6 @@ def test_rulings_come_when_they_are_found(content, paper, settings):
     lines = content.of_paper(paper, settings).rulings
     assert len(lines.points) > 20
     assert content.of_paper(paper, settings).rulings is lines
-
-
-def test_a_paper_without_a_session_and_a_baked_one_have_nothing_to_draw(extension, content, paper, settings):
-    live = extension("curvefold_addon.live")
-    bpy.context.scene.frame_end = 2
-    assert bpy.ops.curvefold.bake() == {"FINISHED"}
-    assert content.of_paper(paper, settings) is None
-    assert bpy.ops.curvefold.free_bake() == {"FINISHED"}
-    assert content.of_paper(paper, settings) is not None
-    live.forget()
-    assert content.of_paper(paper, settings) is None
 
 
 def test_papers_are_those_that_the_viewport_shows(content, paper):

@@ -33,6 +33,10 @@ class Notes:
         assert icon in ICONS
         self.notes["properties"].append(name)
 
+    def progress(self, factor=0.0, text=""):
+        assert 0.0 <= factor <= 1.0
+        self.notes["texts"].append(text)
+
     def operator(self, idname, text="", icon="NONE", depress=False):
         assert icon in ICONS
         group, _, name = idname.partition(".")
@@ -87,6 +91,10 @@ def drawn(panel):
     return layout.notes
 
 
+def said(notes):
+    return " ".join(notes["texts"])
+
+
 def shown(panels):
     return {
         cls.__name__
@@ -119,7 +127,15 @@ def test_a_sheet_is_offered_creases_and_then_paper(panels, wording):
     notes = drawn(panels.MainPanel)
     assert notes["operators"] == ["curvefold.draw_crease", "curvefold.make_paper"]
     assert notes["grey"] == ["curvefold.make_paper"]
-    assert wording.NO_CREASE in " ".join(notes["texts"])
+    assert said(notes) == f"A4 Sheet: No creases {wording.NO_CREASE}", "nothing is wrong with a new sheet"
+    bpy.ops.curvefold.draw_crease()
+    bpy.ops.object.mode_set(mode="EDIT")
+    texts = drawn(panels.MainPanel)["texts"]
+    assert texts[:2] == ["A4 Sheet: 1 crease", "Selected creases fold to"], "nor with a crease being drawn"
+    assert " ".join(texts[2:]) == wording.DRAWING
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.view_layer.update()
+    assert "Crease: it is empty" in said(drawn(panels.MainPanel))
     bpy.ops.curvefold.add_sample(sample="one_arc")
     notes = drawn(panels.MainPanel)
     assert "1 crease" in notes["texts"][0]
@@ -151,7 +167,7 @@ def test_a_paper_says_how_it_stands_and_has_its_slider(panels, extension, paper)
     assert report.sentence in said
     assert f"Stretch {report.stretch_mean:.2%} mean" in said
     assert notes["properties"] == ["fold", "live"]
-    assert len(shown(panels)) == 10
+    assert len(shown(panels)) == 11
 
 
 def test_a_paper_whose_session_is_gone_is_drawn_too(panels, extension, wording, paper):
@@ -208,7 +224,7 @@ def test_a_handle_is_listed_with_all_that_can_be_set(panels, paper):
     assert {"curvefold.remove_handle", "curvefold.pin", "curvefold.place_handle"} <= set(notes["operators"])
     layout = Notes()
     panels.HandleList.draw_item(
-        None, context(), layout, settings, settings.handles[0], 0, settings, "active_handle"
+        None, context(), layout, settings, settings.handles[0], 0, settings, "chosen_handle"
     )
     assert layout.notes["properties"] == ["enabled", "name"]
     settings.active_handle = 5
@@ -229,6 +245,9 @@ def test_a_bake_can_be_made_and_freed(panels, wording, paper):
     bpy.ops.curvefold.bake()
     assert drawn(panels.AnimationPanel)["operators"] == ["curvefold.free_bake"]
     assert wording.BAKED in " ".join(drawn(panels.MainPanel)["texts"])
+    bpy.ops.curvefold.free_bake()
+    paper.shape_key_add(name="Mine")
+    assert wording.KEYED in " ".join(drawn(panels.MainPanel)["texts"])
 
 
 def test_drawing_and_advanced_panels_draw(panels, paper):
@@ -280,10 +299,33 @@ def test_joints_and_flows_show_what_can_be_set_of_them(panels, paper):
     assert layout.notes["properties"] == ["enabled", "name"]
     assert drawn(panels.FlowPanel)["properties"] == ["flow"]
     settings.creases[0].flow = "OBJECT"
-    assert drawn(panels.FlowPanel)["properties"] == ["flow", "curve", "progress"]
+    assert drawn(panels.FlowPanel)["properties"] == ["flow", "curve", "progress", "flow_speed", "flow_strength"]
     settings.active_joint = settings.active_crease = 7
     assert drawn(panels.JointsPanel)["properties"] == ["joints"]
     assert drawn(panels.FlowPanel)["properties"] == []
+
+
+def test_a_flow_shows_how_far_it_has_come(panels, extension, paper):
+    live = extension("curvefold_addon.live")
+    crease = paper.data.curvefold.creases[0]
+    crease.flow, crease.curvature_times, crease.progress = "SHAPE", 1.2, 40.0
+    assert drawn(panels.FlowPanel)["texts"] == []
+    live.settle(paper.data)
+    assert drawn(panels.FlowPanel)["texts"] == ["40% of the way"]
+
+
+def test_angles_at_points_are_listed_and_the_active_one_can_be_set(panels, paper):
+    assert drawn(panels.PointAnglesPanel)["operators"] == ["curvefold.place_angle", "curvefold.add_angles"]
+    settings = paper.data.curvefold
+    angle = settings.angles.add()
+    notes = drawn(panels.PointAnglesPanel)
+    assert notes["operators"][-1] == "curvefold.remove_angle"
+    assert notes["properties"] == ["angles", "angle", "signed", "strength"]
+    layout = Notes()
+    panels.AngleList.draw_item(None, context(), layout, settings, angle, 0, settings, "active_angle")
+    assert layout.notes["properties"] == ["enabled", "name", "angle"]
+    settings.active_angle = 7
+    assert drawn(panels.PointAnglesPanel)["properties"] == ["angles"]
 
 
 def test_every_weight_of_the_solver_can_be_set(panels, extension, paper):
