@@ -408,12 +408,19 @@ class FoldModel:
             return
         # Polishing may undo a faint fold or stretch an edge: back to settling, with what gave way held harder.
         undone: list[Pull] = [pull for pull in (self._condition, self._paper) if pull.undone(x)]
+        if not undone and self._missed(x) and self._paper.give_way():
+            self._condition.start_anew()
+            undone = [self._condition, self._paper]
         for pull in undone:
             self._replace(problem, pull)
         if undone:
             self._still, self._polished = False, 0
         else:
             self.status = Status.SETTLED
+
+    def _missed(self, x: FloatArray) -> bool:
+        """Whether a point stays unfolded or a handle off its target, which a harder paper may be the cause of."""
+        return self._condition.lost(x) or bool(self._handles.gaps(x).max(initial=0.0) > REACHED)
 
 
 def _same_structure(new: dict[str, IntArray], old: dict[str, IntArray]) -> bool:

@@ -51,6 +51,14 @@ class ConditionPull(Pull):
         """Whether polishing to x has undone a faint fold and the condition has been made stiffer for it."""
         return self._may_stiffen(x) and self._stiffen(~self._folded(x))
 
+    def lost(self, x: FloatArray) -> bool:
+        """Whether some point is not folded that should be."""
+        return self._may_stiffen(x) and not bool(self._folded(x).all())
+
+    def start_anew(self) -> None:
+        """Back to the usual stiffness."""
+        self._stiffness, self._times = np.ones(len(self._term.stencil)), 0
+
     def _folded(self, x: FloatArray) -> BoolArray:
         """(n,) whether each point that carries the condition is folded."""
         folded = measure(self._net, self._net.frame.to_drawing(x)).folded

@@ -74,8 +74,14 @@ class PaperPull(Pull):
         self._returns += 1
         return True
 
+    def give_way(self) -> bool:
+        """Back to the usual weights, for good, because holding harder cost more than it brought; whether it did."""
+        held = self.wake()
+        self._times, self._returns = _MOST_TIMES, _MOST_RETURNS
+        return held
+
     def wake(self) -> bool:
-        changed = self._times + self._returns > 0
+        changed = bool((self._heavier != 1.0).any() or self._tighter != 1.0)
         self._heavier, self._tighter = np.ones(len(self._net.edges)), 1.0
         self._times, self._returns = 0, 0
         return changed

@@ -65,3 +65,16 @@ def test_a_paper_at_its_limit_or_at_ease_is_left_alone(drawings: ModuleType) -> 
     assert not pull.settle(x), "no edge is stretched too far"
     assert not pull.settle(1.01 * x), "every edge is: others have to give way"
     assert not pull.undone(1.02 * x)
+
+
+def test_a_paper_that_held_too_hard_gives_way_for_good_until_it_is_told_something_new(drawings: ModuleType) -> None:
+    net, x = pulled(drawings, 0.02)
+    pull = PaperPull(net, 20000.0, 1e4)
+    assert not pull.give_way(), "it has not held harder yet"
+    pull.wake()
+    assert pull.settle(x)
+    assert pull.give_way()
+    assert not pull.settle(x)
+    assert not pull.undone(x)
+    pull.wake()
+    assert pull.settle(x)
