@@ -18,6 +18,7 @@ from .controls.angle import Angle
 from .controls.control import crease_index
 from .controls.pull import Finding, Lack
 from .description import FoldDescription, Handle
+from .drive import MAX_MEAN_STRETCH
 from .errors import CurvefoldError
 from .folding import REACHED, FoldModel, SqpReport, Status
 from .laid_flat import off_plane
@@ -33,8 +34,6 @@ _REPORT_EVERY = 10
 ANGLE_REACHED = 0.85
 #: A sheet thinner than this is flat, net units.
 _FLAT = 1e-6
-#: Mean relative stretch that paper may show (paper, section 6.1).
-MAX_MEAN_STRETCH = 0.003
 
 Progress = Callable[[int, SqpReport], None]
 

@@ -23,7 +23,7 @@ from .controls.pull import Finding, Pull
 from .controls.registry import KINDS, control_label
 from .controls.side import Side, found_letters
 from .description import Handle, Weights
-from .drive import FIRST_ANGLE, AngleDrive, mean_stretch
+from .drive import FIRST_ANGLE, MAX_MEAN_STRETCH, AngleDrive, mean_stretch
 from .errors import DescriptionError, NotPositiveDefiniteError
 from .first_fold import choose_sides, first_fold
 from .laid_flat import laid_flat, off_plane
@@ -114,6 +114,8 @@ class FoldModel:
         self._shape: dict[str, IntArray] = {}  # stencils of the pulls' terms in the problem
         self._merits: list[float] = []
         self._steps_down = 0
+        # Where the paper came to rest before it held harder, and how stiff the fold condition was there.
+        self._softer: tuple[FloatArray, tuple[FloatArray, int]] | None = None
         self._stage, self._polished, self._still = 0, 0, False
         self._way = Homotopy()
         self._controls: tuple[Control, ...] = ()
@@ -274,7 +276,7 @@ class FoldModel:
     def _wake(self) -> None:
         self.status = Status.RUNNING
         self._merits, self._stage, self._polished, self._still = [], 0, 0, False
-        self._steps_down = 0
+        self._steps_down, self._softer = 0, None
         self._way.start_anew()
         for pull in self._pulls():
             pull.wake()
@@ -394,6 +396,8 @@ class FoldModel:
         changed: list[Pull] = [pull for pull in self._pulls() if pull is not self._paper and pull.settle(x)]
         if not changed and self._paper.settle(x):
             changed.append(self._paper)
+            if self._softer is None:
+                self._softer = x, self._condition.held()
         for pull in changed:
             self._replace(problem, pull)
         return bool(changed)
@@ -408,8 +412,10 @@ class FoldModel:
             return
         # Polishing may undo a faint fold or stretch an edge: back to settling, with what gave way held harder.
         undone: list[Pull] = [pull for pull in (self._condition, self._paper) if pull.undone(x)]
-        if not undone and self._missed(x) and self._paper.give_way():
-            self._condition.start_anew()
+        if not undone and self._softer is not None and self._missed(x) and self._paper.give_way():
+            softer, held = self._softer
+            self._state = at_rest(softer)
+            self._condition.hold(held)
             undone = [self._condition, self._paper]
         for pull in undone:
             self._replace(problem, pull)
@@ -419,8 +425,9 @@ class FoldModel:
             self.status = Status.SETTLED
 
     def _missed(self, x: FloatArray) -> bool:
-        """Whether a point stays unfolded or a handle off its target, which a harder paper may be the cause of."""
-        return self._condition.lost(x) or bool(self._handles.gaps(x).max(initial=0.0) > REACHED)
+        """Whether the fold counts as failed: a point is unfolded, a handle off its target, the paper stretched."""
+        off_target = bool(self._handles.gaps(x).max(initial=0.0) > REACHED)
+        return off_target or mean_stretch(self.net, x) > MAX_MEAN_STRETCH or self._condition.lost(x)
 
 
 def _same_structure(new: dict[str, IntArray], old: dict[str, IntArray]) -> bool:

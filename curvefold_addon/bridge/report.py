@@ -8,7 +8,8 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ...solver.fold import ANGLE_REACHED, MAX_MEAN_STRETCH, fold_angle_quantiles
+from ...solver.drive import MAX_MEAN_STRETCH
+from ...solver.fold import ANGLE_REACHED, fold_angle_quantiles
 from ...solver.folding import REACHED
 from .hooks import handle_label
 from .session import Session

@@ -55,9 +55,13 @@ class ConditionPull(Pull):
         """Whether some point is not folded that should be."""
         return self._may_stiffen(x) and not bool(self._folded(x).all())
 
-    def start_anew(self) -> None:
-        """Back to the usual stiffness."""
-        self._stiffness, self._times = np.ones(len(self._term.stencil)), 0
+    def held(self) -> tuple[FloatArray, int]:
+        """How stiff each point is held, and how often it was made stiffer, for ``hold``."""
+        return self._stiffness, self._times
+
+    def hold(self, held: tuple[FloatArray, int]) -> None:
+        """Back to what ``held`` told."""
+        self._stiffness, self._times = held
 
     def _folded(self, x: FloatArray) -> BoolArray:
         """(n,) whether each point that carries the condition is folded."""

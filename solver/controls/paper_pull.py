@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import FloatArray
-from ..drive import MEAN_BUDGET
+from ..drive import MAX_MEAN_STRETCH, MEAN_BUDGET
 from ..net.piecewise_dog import PiecewiseDog
 from ..objectives.continuity import continuity
 from ..objectives.isometry import isometry
@@ -51,9 +51,13 @@ class PaperPull(Pull):
         ]
 
     def settle(self, x: FloatArray) -> bool:
-        """Hold harder what has given way, unless all of the paper is at its limit: then others have to give way."""
+        """Hold harder what has given way, unless all of the paper is at its limit: then others have to give way.
+
+        Beyond what paper may show there is nothing to lose by it, and some folds that were stuck get free.
+        """
         stretch = self._stretch(x)
-        if self._times >= _MOST_TIMES or stretch.mean() > _FULL * MEAN_BUDGET:
+        at_limit = _FULL * MEAN_BUDGET < stretch.mean() <= MAX_MEAN_STRETCH
+        if self._times >= _MOST_TIMES or at_limit:
             return False
         stretched = stretch > ALLOWED_STRETCH
         gaping = self._tighter < _TIGHTEST and ALLOWED_GAP < self._mean_gap(x) < _COARSE_GAP

@@ -290,10 +290,14 @@ def segments_of(lines: shapely.Geometry, node: float) -> tuple[IntArray, FloatAr
 def nearest_line(lines: list[LineString], points: FloatArray, within: float) -> IntArray:
     """Index (N,) of the first line within a distance of each point, -1 where there is none."""
     result = np.full(len(points), -1, dtype=np.int64)
-    tree = shapely.STRtree(lines)
-    pairs = tree.query(shapely.points(points), predicate="dwithin", distance=within)
-    order = np.argsort(-pairs[1], kind="stable")  # the lowest index is written last and stays
-    result[pairs[0][order]] = pairs[1][order]
+    # By segments: a tree of whole curves has boxes that hold half of the sheet.
+    coordinates, line = shapely.get_coordinates(lines, return_index=True)
+    joined = np.flatnonzero(line[1:] == line[:-1])
+    tree = shapely.STRtree(shapely.linestrings(np.stack([coordinates[joined], coordinates[joined + 1]], axis=1)))
+    which, segment = tree.query(shapely.points(points), predicate="dwithin", distance=within)
+    owner = line[joined][segment]
+    order = np.argsort(-owner, kind="stable")  # the lowest index is written last and stays
+    result[which[order]] = owner[order]
     return result
 
 

@@ -17,7 +17,8 @@ import pytest
 import shapely
 
 import solver
-from solver.fold import MAX_MEAN_STRETCH, fold_angle_quantiles
+from solver.drive import MAX_MEAN_STRETCH
+from solver.fold import fold_angle_quantiles
 
 FOLDER = Path(__file__).resolve().parents[2] / "sample_patterns"
 SAMPLES = sorted(path.stem for path in FOLDER.glob("*.svg"))
