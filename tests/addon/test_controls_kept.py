@@ -218,7 +218,7 @@ def test_sides_that_handles_contradict_are_named(strip, live):
     for at in np.mgrid[-0.055:0.056:0.022, -0.018:0.0181:0.009].reshape(2, -1).T.tolist():
         handle = settings.handles.add()
         handle.at, handle.offset, handle.pinned = at, found.place_of(tuple(handle.at)), True
-        handle.strength = 20.0
+        handle.strength = 4.0
     for crease, report in zip(settings.creases, live.report(strip.data).creases, strict=True):
         crease.side = {"V": "M", "M": "V"}[report.found]
     settings.fold = 0.0
