@@ -119,10 +119,15 @@ class AngleDrive(Pull):
         return np.clip((self.angle or 0.0) * self._amount, 0.0, 180.0)
 
 
+def edge_stretch(net: PiecewiseDog, x: FloatArray) -> FloatArray:
+    """(E,) relative change of length of the net's edges at x (V,3), net units, without its sign."""
+    length = np.linalg.norm(x[net.edges[:, 1]] - x[net.edges[:, 0]], axis=1)
+    return np.asarray(np.abs(length / net.edge_length - 1))
+
+
 def mean_stretch(net: PiecewiseDog, x: FloatArray) -> float:
     """Mean relative change of length of the net's edges at x (V,3), net units."""
-    length = np.linalg.norm(x[net.edges[:, 1]] - x[net.edges[:, 0]], axis=1)
-    return float(np.abs(length / net.edge_length - 1).mean())
+    return float(edge_stretch(net, x).mean())
 
 
 def present_angles(net: PiecewiseDog, x: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..arrays import FloatArray
-from ..drive import MAX_MEAN_STRETCH, MEAN_BUDGET
+from ..drive import MAX_MEAN_STRETCH, MEAN_BUDGET, edge_stretch
 from ..net.piecewise_dog import PiecewiseDog
 from ..objectives.continuity import continuity
 from ..objectives.isometry import isometry
@@ -55,7 +55,7 @@ class PaperPull(Pull):
 
         Beyond what paper may show there is nothing to lose by it, and some folds that were stuck get free.
         """
-        stretch = self._stretch(x)
+        stretch = edge_stretch(self._net, x)
         at_limit = _FULL * MEAN_BUDGET < stretch.mean() <= MAX_MEAN_STRETCH
         if self._times >= _MOST_TIMES or at_limit:
             return False
@@ -70,7 +70,7 @@ class PaperPull(Pull):
 
     def undone(self, x: FloatArray) -> bool:
         """Whether polishing to x has stretched edges too far, which then weigh more."""
-        stretch = self._stretch(x)
+        stretch = edge_stretch(self._net, x)
         stretched = stretch > _POLISHED_STRETCH
         if not stretched.any() or self._returns >= _MOST_RETURNS or stretch.mean() > _FULL * MEAN_BUDGET:
             return False
@@ -89,12 +89,6 @@ class PaperPull(Pull):
         self._heavier, self._tighter = np.ones(len(self._net.edges)), 1.0
         self._times, self._returns = 0, 0
         return changed
-
-    def _stretch(self, x: FloatArray) -> FloatArray:
-        """(E,) how much longer or shorter each edge is than flat, in parts of its length."""
-        ends = x[self._net.edges]
-        length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-        return np.asarray(np.abs(length / self._net.edge_length - 1))
 
     def _mean_gap(self, x: FloatArray) -> float:
         """Mean distance of two copies of a crease point, net units; 0 without creases."""
