@@ -6,7 +6,7 @@ import bpy
 
 from . import live, wording
 from .control_properties import WEIGHTS
-from .panel_parts import PaperPanel, say, settings_column
+from .panel_parts import PaperPanel, say, settings_column, switched_row
 
 #: More sentences about what cannot be had than this are not shown.
 MOST_LACKS = 4
@@ -124,10 +124,7 @@ class AngleList(bpy.types.UIList):
         index: int = 0,
         flt_flag: int = 0,
     ) -> None:
-        row = layout.row(align=True)
-        row.prop(item, "enabled", text="")
-        row = row.row(align=True)
-        row.active = item.enabled
+        row = switched_row(layout, item)
         row.prop(item, "name", text="", emboss=False)
         row.prop(item, "angle", text="")
 
@@ -176,10 +173,7 @@ class JointList(bpy.types.UIList):
         index: int = 0,
         flt_flag: int = 0,
     ) -> None:
-        row = layout.row(align=True)
-        row.prop(item, "enabled", text="")
-        row = row.row(align=True)
-        row.active = item.enabled
+        row = switched_row(layout, item)
         row.prop(item, "name", text="", emboss=False, icon=wording.JOINT_ICONS[item.family])
 
 

@@ -45,6 +45,15 @@ class PaperPanel(Tab):
         return live.active_paper(context) is not None
 
 
+def switched_row(layout: bpy.types.UILayout, entry: bpy.types.PropertyGroup) -> bpy.types.UILayout:
+    """A row of a list for what can be switched off: the switch, and room for the rest, grey when it is off."""
+    row = layout.row(align=True)
+    row.prop(entry, "enabled", text="")
+    row = row.row(align=True)
+    row.active = entry.enabled
+    return row
+
+
 def settings_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
     """A column of settings with their names beside them."""
     column = layout.column()

@@ -18,7 +18,7 @@ from .control_panels import (
 )
 from .operators.add_sample import SampleMenu
 from .overlay import trouble_marks
-from .panel_parts import PaperPanel, Tab, say
+from .panel_parts import PaperPanel, Tab, say, switched_row
 
 
 class MainPanel(Tab, bpy.types.Panel):
@@ -123,10 +123,7 @@ class HandleList(bpy.types.UIList):
         index: int = 0,
         flt_flag: int = 0,
     ) -> None:
-        row = layout.row(align=True)
-        row.prop(item, "enabled", text="")
-        row = row.row(align=True)
-        row.active = item.enabled
+        row = switched_row(layout, item)
         row.prop(item, "name", text="", emboss=False, icon="PINNED" if item.hook is None else "EMPTY_AXIS")
 
 
