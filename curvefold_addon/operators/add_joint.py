@@ -10,7 +10,7 @@ from .. import handle_making, live
 from ..bridge import surface_points
 from ..control_properties import RELATIONS, SHAPES
 from .add_handles import leave_edit_mode, selected_points
-from .on_paper import OnPaper
+from .on_paper import OnPaper, remove_entry
 
 _NAMES = {"POINTS": "Points", "BORDERS": "Seam", "PATCH": "Patch"}
 
@@ -96,13 +96,8 @@ class RemoveJoint(OnPaper, bpy.types.Operator):
     )
 
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
-        settings = paper.data.curvefold
-        index = settings.active_joint if self.index < 0 else self.index
-        if index >= len(settings.joints):
+        if not remove_entry(paper, "joints", "active_joint", self.index):
             return self.refuse("The paper has no such joint")
-        settings.joints.remove(index)
-        settings.active_joint = max(0, min(settings.active_joint, len(settings.joints) - 1))
-        paper.data.update_tag()
         handle_making.go_on(paper)
         return {"FINISHED"}
 

@@ -28,3 +28,16 @@ class OnPaper:
         """Says why nothing was done."""
         self.report({"ERROR"}, sentence)
         return {"CANCELLED"}
+
+
+def remove_entry(paper: bpy.types.Object, entries: str, active: str, index: int) -> bool:
+    """Takes one of a paper's ``entries`` away, for -1 the ``active`` one; whether there was such a one."""
+    settings = paper.data.curvefold
+    listed = getattr(settings, entries)
+    index = getattr(settings, active) if index < 0 else index
+    if index >= len(listed):
+        return False
+    listed.remove(index)
+    setattr(settings, active, max(0, min(getattr(settings, active), len(listed) - 1)))
+    paper.data.update_tag()
+    return True

@@ -12,7 +12,7 @@ from ..bridge import overlay, surface_points
 from ..bridge.state import StateError
 from .add_handles import leave_edit_mode
 from .click_on_crease import ClickOnCrease
-from .on_paper import OnPaper
+from .on_paper import OnPaper, remove_entry
 
 _NO_ROOM = "The net is too coarse there to hold an angle; raise the paper's resolution"
 
@@ -63,13 +63,8 @@ class RemoveAngle(OnPaper, bpy.types.Operator):
     )
 
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
-        settings = paper.data.curvefold
-        index = settings.active_angle if self.index < 0 else self.index
-        if index >= len(settings.angles):
+        if not remove_entry(paper, "angles", "active_angle", self.index):
             return self.refuse("The paper has no such angle")
-        settings.angles.remove(index)
-        settings.active_angle = max(0, min(settings.active_angle, len(settings.angles) - 1))
-        paper.data.update_tag()
         handle_making.go_on(paper)
         return {"FINISHED"}
 
