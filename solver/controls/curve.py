@@ -17,6 +17,7 @@ from ..arrays import FloatArray, IntArray
 from ..drive import MEAN_BUDGET, mean_stretch
 from ..errors import DescriptionError
 from ..net.piecewise_dog import PiecewiseDog
+from ..objectives.continuity import mean_gap
 from ..optimize.term import LinearTerm
 from .control import Control, ControlPull, CreaseName, crease_index, crease_name, flag, number, positive, vector
 from .pull import Finding, Lack, Term
@@ -32,8 +33,11 @@ _FLATTER, _FLATTER_BY = 0.03, 2e-3
 _NEARLY_STRAIGHT = 0.1
 #: A space curve may be shorter than the crease by this part.
 _SHORTER = 0.02
-#: A curve that is missed although the paper is far from stretched pulls harder, at most so often.
+#: A curve that is missed although the paper is far from stretched, and from torn, pulls harder, at most so often.
 _STIFFER, _STIFFENINGS = 4.0, 4
+#: Not with a mean gap beyond this, net units, half of what paper may show at rest: a curve that it cannot follow
+#: would tear the paper open.
+_TAUT_GAP = 0.7e-4
 #: Where on its way from flat a crease is, is found in steps of one of so many parts.
 _PARTS = 200
 #: At rest a free curve is laid onto the crease anew at most so often.
@@ -225,6 +229,8 @@ class CurvePull(ControlPull):
             self._laid += 1
             return True
         if self._times >= _STIFFENINGS or mean_stretch(self._net, x) > 0.5 * MEAN_BUDGET:
+            return False
+        if mean_gap(self._net, x) > _TAUT_GAP:
             return False
         if max(self._misses(x)) <= _CLOSE:
             return False

@@ -14,7 +14,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..drive import MAX_MEAN_STRETCH, MEAN_BUDGET, edge_stretch
 from ..net.piecewise_dog import PiecewiseDog
-from ..objectives.continuity import continuity
+from ..objectives.continuity import continuity, mean_gap
 from ..objectives.isometry import isometry
 from .pull import Pull, Term
 
@@ -25,12 +25,14 @@ _HEAVIER, _MOST_TIMES = 3.0, 4
 #: Stitches hold harder when they gape more than this in the mean at rest, net units: the paper's 2e-4 with room to
 #: spare. Not beyond the second bound: so coarse a net needs its gaps, and its angles suffered without them.
 ALLOWED_GAP, _COARSE_GAP = 1.4e-4, 4e-4
-#: So many times harder, at most in all.
-_TIGHTER, _TIGHTEST = 2.5, 6.25
+#: So many times harder, at most so often.
+_TIGHTER, _TIGHTENINGS = 2.5, 2
 #: With more than this part of the stretch budget in the mean nothing can be shared out any more.
-_FULL = 0.8
+_FULL = 0.95
 #: Polishing may stretch an edge to this without being taken back for it, and is taken back at most so often.
 _POLISHED_STRETCH, _MOST_RETURNS = 0.01, 2
+#: Then it weighs so many times more: another way back costs twenty iterations.
+_HEAVIER_POLISHED = 9.0
 
 
 class PaperPull(Pull):
@@ -41,13 +43,13 @@ class PaperPull(Pull):
         self._isometry = isometry(net, isometry_weight)
         self._continuity = continuity(net, continuity_weight)
         self._heavier = np.ones(len(net.edges))
-        self._tighter = 1.0
+        self._tightened = 0
         self._times, self._returns = 0, 0
 
     def terms(self) -> list[Term]:
         return [
             replace(self._isometry, weight=self._isometry.weight * self._heavier),
-            replace(self._continuity, weight=self._continuity.weight * self._tighter),
+            replace(self._continuity, weight=self._continuity.weight * _TIGHTER**self._tightened),
         ]
 
     def settle(self, x: FloatArray) -> bool:
@@ -60,11 +62,11 @@ class PaperPull(Pull):
         if self._times >= _MOST_TIMES or at_limit:
             return False
         stretched = stretch > ALLOWED_STRETCH
-        gaping = self._tighter < _TIGHTEST and ALLOWED_GAP < self._mean_gap(x) < _COARSE_GAP
+        gaping = self._tightened < _TIGHTENINGS and ALLOWED_GAP < mean_gap(self._net, x) < _COARSE_GAP
         if not (stretched.any() or gaping):
             return False
         self._heavier = np.where(stretched, _HEAVIER, 1.0) * self._heavier
-        self._tighter *= _TIGHTER if gaping else 1.0
+        self._tightened += gaping
         self._times += 1
         return True
 
@@ -74,7 +76,7 @@ class PaperPull(Pull):
         stretched = stretch > _POLISHED_STRETCH
         if not stretched.any() or self._returns >= _MOST_RETURNS or stretch.mean() > _FULL * MEAN_BUDGET:
             return False
-        self._heavier = np.where(stretched, _HEAVIER, 1.0) * self._heavier
+        self._heavier = np.where(stretched, _HEAVIER_POLISHED, 1.0) * self._heavier
         self._returns += 1
         return True
 
@@ -85,14 +87,7 @@ class PaperPull(Pull):
         return held
 
     def wake(self) -> bool:
-        changed = bool((self._heavier != 1.0).any() or self._tighter != 1.0)
-        self._heavier, self._tighter = np.ones(len(self._net.edges)), 1.0
+        changed = bool((self._heavier != 1.0).any() or self._tightened)
+        self._heavier, self._tightened = np.ones(len(self._net.edges)), 0
         self._times, self._returns = 0, 0
         return changed
-
-    def _mean_gap(self, x: FloatArray) -> float:
-        """Mean distance of two copies of a crease point, net units; 0 without creases."""
-        if not len(self._continuity.stencil):
-            return 0.0
-        gaps = np.einsum("nk,nkc->nc", self._continuity.coefficients, x[self._continuity.stencil])
-        return float(np.linalg.norm(gaps, axis=1).mean())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import FloatArray
 from ..net.piecewise_dog import PiecewiseDog
 from ..optimize.term import LinearTerm
 
@@ -15,3 +16,12 @@ def continuity(net: PiecewiseDog, weight: float) -> LinearTerm:
     return LinearTerm(
         "continuity", stitches.vertices, stitches.weights, np.zeros((count, 3)), np.full(count, weight)
     )
+
+
+def mean_gap(net: PiecewiseDog, x: FloatArray) -> float:
+    """Mean distance of two copies of a crease point, net units; 0 without creases."""
+    stitches = net.stitches
+    if not len(stitches.vertices):
+        return 0.0
+    gaps = np.einsum("nk,nkc->nc", stitches.weights, x[stitches.vertices])
+    return float(np.linalg.norm(gaps, axis=1).mean())
