@@ -14,7 +14,7 @@ import solver
 from benchmarks.corpus_drags import FRAME_ITERATIONS, Drag, make_drag, protocol_drag
 from benchmarks.corpus_drawings import make_drawing
 from solver.arrays import FloatArray
-from solver.fold import MAX_MEAN_STRETCH, fold_angle_quantiles, judge
+from solver.fold import MAX_MEAN_STRETCH, come_to_rest, fold_angle_quantiles, judge
 from solver.folding import REACHED
 
 #: SQP iterations after which a run that has not settled ends.
@@ -105,16 +105,14 @@ def _drag(run: Run, pattern: solver.CreasePattern, net: solver.PiecewiseDog, dra
         model.set_handles(drag.handles(part))
         report = model.advance(FRAME_ITERATIONS)
         run.iterations += report.iterations
-    settles = drag.kind != "protocol"
-    while settles and model.status is solver.Status.RUNNING and run.iterations < MOST_ITERATIONS:
-        report = model.advance(FRAME_ITERATIONS)
-        run.iterations += report.iterations
-    x = model.positions
-    m = solver.measure(net, x)
     description = solver.FoldDescription(
         angle=None, handles=tuple(drag.handles(way[-1])), max_iterations=MOST_ITERATIONS
     )
-    outcome, run.sentence = judge(description, net, model, report, m)
+    settles = drag.kind != "protocol"
+    rest = come_to_rest(model, description) if settles else judge(model, description, report, 0)
+    run.iterations += rest.iterations
+    report, x, m, outcome = rest.last, rest.positions, rest.measurement, rest.status
+    run.sentence = rest.detail
     run.status = outcome.name.lower().replace("_", " ")
     run.reached = bool(report.handle_error <= REACHED * net.frame.unit)
     run.folded = m.folded_part

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any
 
@@ -59,6 +59,23 @@ class Outcome(Enum):
     @property
     def ok(self) -> bool:
         return self is Outcome.FOLDED
+
+
+#: How a fold that was stuck on its way may end: another way may lead to what was asked.
+_WORTH_ANOTHER_WAY = (Outcome.OUT_OF_REACH, Outcome.NOT_FOLDED, Outcome.STRETCHED, Outcome.UNCERTIFIED)
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """How a model stands, mostly at rest. positions (V,3), drawing units; iterations: of all ways that it went."""
+
+    positions: FloatArray
+    measurement: Measurement
+    status: Outcome
+    detail: str
+    iterations: int
+    last: SqpReport
+    findings: tuple[Finding, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,40 +183,62 @@ def fold(
     model.set_controls(description.controls)
     model.set_handles(description.handles)
     model.set_fold_angle(description.angle)
-    iterations = 0
+    rest = come_to_rest(model, description, progress)
+    return FoldResult(
+        pattern,
+        description,
+        net,
+        rest.positions,
+        rest.measurement,
+        rest.status,
+        rest.detail,
+        rest.iterations,
+        time.perf_counter() - begin,
+        rest.last,
+        rest.findings,
+    )
+
+
+def come_to_rest(model: FoldModel, description: FoldDescription, progress: Progress | None = None) -> Rest:
+    """Advance a model that was told a description until it rests, and once more in another way if that failed.
+
+    What the other way comes to is kept only if it is all that was asked.
+    """
+    rest = _rest(model, description, progress, 0)
+    if not (rest.status in _WORTH_ANOTHER_WAY and description.handles) or _too_far_apart(
+        description.handles, model.net
+    ):
+        return rest
+    model.fold_anew()
+    other = _rest(model, description, progress, rest.iterations)
+    return other if other.status.ok else replace(rest, iterations=other.iterations)
+
+
+def _rest(model: FoldModel, description: FoldDescription, progress: Progress | None, before: int) -> Rest:
+    """Advance a model until it rests. before: iterations that were done already, beside the most there may be."""
+    iterations = before
     while True:
         report = model.advance(_REPORT_EVERY)
         iterations += report.iterations
         if progress is not None:
             progress(iterations, report)
-        if model.status is not Status.RUNNING or iterations >= description.max_iterations:
+        if model.status is not Status.RUNNING or iterations - before >= description.max_iterations:
             break
-    measurement = measure(net, model.positions)
-    status, detail = judge(description, net, model, report, measurement)
-    return FoldResult(
-        pattern,
-        description,
-        net,
-        model.positions,
-        measurement,
-        status,
-        detail,
-        iterations,
-        time.perf_counter() - begin,
-        report,
-        model.findings,
-    )
+    return judge(model, description, report, iterations)
 
 
-def judge(
-    description: FoldDescription,
-    net: PiecewiseDog,
-    model: FoldModel,
-    report: SqpReport,
-    m: Measurement,
+def judge(model: FoldModel, description: FoldDescription, last: SqpReport, iterations: int) -> Rest:
+    """How a model stands that was told a description and has last reported this."""
+    measurement = measure(model.net, model.positions)
+    status, detail = _in_words(description, model, last, measurement)
+    return Rest(model.positions, measurement, status, detail, iterations, last, model.findings)
+
+
+def _in_words(
+    description: FoldDescription, model: FoldModel, report: SqpReport, m: Measurement
 ) -> tuple[Outcome, str]:
     """How a model's fold ended, and the sentence for it: what went wrong first, or that nothing did."""
-    findings = model.findings
+    net, findings = model.net, model.findings
     if model.status is Status.NOT_FINITE or not np.isfinite(model.positions).all():
         return Outcome.NOT_FINITE, Outcome.NOT_FINITE.sentence
     if report.handle_error > REACHED * net.frame.unit:
@@ -249,19 +288,31 @@ def _with_own_angle(description: FoldDescription, net: PiecewiseDog) -> list[int
 
 def _out_of_reach(handles: tuple[Handle, ...], net: PiecewiseDog, model: FoldModel, report: SqpReport) -> str:
     error = report.handle_error
-    for i in range(len(handles)):
-        for j in range(i):
-            flat = shapely.LineString([handles[i].at, handles[j].at])
-            outline = shapely.transform(net.sheet, net.frame.to_drawing)
-            wanted = float(np.linalg.norm(np.subtract(handles[i].target, handles[j].target)))
-            if wanted > flat.length * (1 + 1e-9) and outline.buffer(1e-9 * net.frame.unit).covers(flat):
-                return (
-                    f"out of reach: the targets of handles {j + 1} and {i + 1} are {wanted:.4g} apart, but the "
-                    f"sheet between them is only {flat.length:.4g} long"
-                )
+    if apart := _too_far_apart(handles, net):
+        return apart
     worst = model.worst_handle
     x, y = handles[worst].at
     return f"handle {worst + 1} at ({x:.4g}, {y:.4g}) is out of reach: it stays {error:.3g} from its target"
+
+
+def _too_far_apart(handles: tuple[Handle, ...], net: PiecewiseDog) -> str:
+    """What is said of two handles whose targets no paper between them can reach; empty when there are none."""
+    whole = [k for k, handle in enumerate(handles) if all(handle.axes)]
+    if len(whole) < 2:
+        return ""
+    at = np.array([handles[k].at for k in whole])
+    targets = np.array([handles[k].target for k in whole])
+    later, earlier = np.tril_indices(len(whole), -1)
+    lengths = np.linalg.norm(at[later] - at[earlier], axis=1)
+    wanted = np.linalg.norm(targets[later] - targets[earlier], axis=1)
+    outline = shapely.transform(net.sheet, net.frame.to_drawing).buffer(1e-9 * net.frame.unit)
+    for k in np.flatnonzero(wanted > lengths * (1 + 1e-9)):
+        if outline.covers(shapely.LineString(at[[later[k], earlier[k]]])):
+            return (
+                f"out of reach: the targets of handles {whole[earlier[k]] + 1} and {whole[later[k]] + 1} are "
+                f"{wanted[k]:.4g} apart, but the sheet between them is only {lengths[k]:.4g} long"
+            )
+    return ""
 
 
 def in_words(error: CurvefoldError) -> str:

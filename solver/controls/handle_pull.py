@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..drive import MEAN_BUDGET, mean_stretch
+from ..drive import MAX_MEAN_STRETCH, MEAN_BUDGET, mean_stretch
 from ..errors import HandleError
 from ..net.piecewise_dog import PiecewiseDog
 from ..objectives.handles import AxisHandles, handles
@@ -28,6 +28,9 @@ _CLOSE = 0.05
 #: Handles that would count as missed pull a little harder even where the paper is stretched, up to this mean, and
 #: oftener: the paper holds harder meanwhile.
 _MISSED, _STIFFER_IF_MISSED, _NEARLY_STRETCHED, _STIFFENINGS_IF_MISSED = 0.25, 1.6, 0.0028, 6
+#: Handles that are near enough let go a little of a paper that they stretch too far: so much, while nearer than
+#: this, net units, and from a mean stretch that no other remedy would lower.
+_SOFTER, _ROOM, _FAR_STRETCHED = 1.25, 0.28, 0.005
 #: Handles nearer than this to each other hold one point, net units.
 _SAME_POINT = 1e-6
 
@@ -37,7 +40,7 @@ class HandlePull(Pull):
 
     def __init__(self, net: PiecewiseDog, weight: float) -> None:
         self._net, self._weight = net, weight
-        self._handles: tuple[Handle, ...] = ()
+        self.handles: tuple[Handle, ...] = ()
         self._vertices = np.zeros((0, 4), dtype=np.int64)
         self._weights = np.zeros((0, 4))
         self._axes = np.ones((0, 3), dtype=bool)  # of the drawing, along which each handle pulls
@@ -47,7 +50,7 @@ class HandlePull(Pull):
         self._harder, self._times = 1.0, 0
 
     def __len__(self) -> int:
-        return len(self._handles)
+        return len(self.handles)
 
     def set(self, handles: Sequence[Handle], x: FloatArray) -> None:
         """Replace all handles. Handles that stay at the same point keep their way.
@@ -65,11 +68,11 @@ class HandlePull(Pull):
         vertices = np.array([located[k][0] for k in kept], dtype=np.int64).reshape(-1, 4)
         weights = np.array([located[k][1] for k in kept]).reshape(-1, 4)
         now = np.einsum("hk,hkc->hc", weights, x[vertices])
-        same = [next((j for j, old in enumerate(self._handles) if old.at == new.at), None) for new in handles]
+        same = [next((j for j, old in enumerate(self.handles) if old.at == new.at), None) for new in handles]
         paths = np.array([now[k] if j is None else self._paths[j] for k, j in enumerate(same)])
         self._axes = np.array([h.axes for h in handles], dtype=bool).reshape(-1, 3)
         self._strengths = np.array([h.strength for h in handles])
-        self._handles, self._vertices, self._weights = handles, vertices, weights
+        self.handles, self._vertices, self._weights = handles, vertices, weights
         self._targets = self._net.frame.to_net(np.array([h.target for h in handles]).reshape(-1, 3))
         self._paths = paths.reshape(-1, 3)
 
@@ -115,14 +118,17 @@ class HandlePull(Pull):
         return True
 
     def settle(self, x: FloatArray) -> bool:
-        """Pull harder when handles stay off their targets though the paper is far from stretched."""
-        if not len(self._handles) or self._times >= _STIFFENINGS_IF_MISSED:
+        """Pull harder when handles stay off their targets though the paper is far from stretched, softer when they
+        are near and it is stretched too far."""
+        if not len(self.handles) or self._times >= _STIFFENINGS_IF_MISSED:
             return False
         gap, mean = self.gaps(x).max(), mean_stretch(self._net, x)
         if gap > _CLOSE and mean <= 0.5 * MEAN_BUDGET and self._times < _STIFFENINGS:
             self._harder *= _STIFFER
         elif gap > _MISSED and mean <= _NEARLY_STRETCHED:
             self._harder *= _STIFFER_IF_MISSED
+        elif gap < _ROOM and MAX_MEAN_STRETCH < mean <= _FAR_STRETCHED:
+            self._harder /= _SOFTER
         else:
             return False
         self._times += 1

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import sys
 from types import ModuleType
 
 import numpy as np
 import pytest
+from settling import settle
 
 import solver
+from benchmarks.corpus_drags import make_drag
+from benchmarks.corpus_drawings import make_drawing
+
+#: ``solver.fold`` is the function; its module has the same name.
+fold_module = sys.modules["solver.fold"]
 
 
 def test_a_fold_is_a_function_of_its_drawing_and_description(drawings: ModuleType) -> None:
@@ -88,3 +95,56 @@ def test_the_summary_says_how_it_went(drawings: ModuleType) -> None:
     text = result.summary()
     for words in ("vertices", "iterations", "fold angle", "stretch", "100.0%"):
         assert words in text
+
+
+# --- another way ----------------------------------------------------------------------------------------
+
+
+def test_folded_anew_a_paper_opens_along_its_creases_and_is_then_told_the_same(drawings: ModuleType) -> None:
+    pattern = drawings.one_arc()
+    net = solver.build_net(pattern, 10)
+    model = solver.FoldModel(net)
+    low = pattern.boundary[:2]
+    model.set_handles([solver.Handle((x, y), (x * 0.9 + 0.05, y, 0.15)) for x, y in low.tolist()])
+    settle(model)
+    model.fold_anew()
+    assert np.abs(model.positions[:, 2]).max() == 0
+    medians, errors = [], []
+    while model.status is solver.Status.RUNNING:
+        report = model.advance(5)
+        medians.append(float(np.nanmedian(solver.measure(net, model.positions).fold_angle)))
+        errors.append(report.handle_error)
+    opened = int(np.argmax(np.array(medians) > 0.9 * 60))
+    assert medians[opened] > 0.9 * 60
+    assert errors[opened] > 0.02
+    assert errors[-1] < 0.1 * errors[opened]
+    assert solver.measure(net, model.positions).folded.all()
+    assert report.asked_angle is None
+
+
+def test_what_is_stuck_on_the_way_of_its_handles_gets_there_in_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Corpus seed 738: two arcs, handles that lift a corner at once."""
+    drawing = make_drawing(738)
+    drag = make_drag(738, drawing, solver.build_net(drawing.pattern, drawing.resolution))
+    told = solver.FoldDescription(drawing.resolution, angle=None, handles=tuple(drag.handles(1.0)))
+    result = solver.fold(drawing.pattern, told)
+    assert result.status is solver.Outcome.FOLDED
+    monkeypatch.setattr(fold_module, "_WORTH_ANOTHER_WAY", ())
+    stuck = solver.fold(drawing.pattern, told)
+    assert stuck.status is solver.Outcome.OUT_OF_REACH
+    assert stuck.iterations < result.iterations
+
+
+def test_another_way_that_does_not_arrive_leaves_the_first_shape(
+    drawings: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pattern = drawings.one_arc()
+    (x0, y0), (x1, y1) = pattern.boundary.min(axis=0).tolist(), pattern.boundary.max(axis=0).tolist()
+    handles = (solver.Handle((x0, y0), (x0, y0, 0)), solver.Handle((x1, y1), (x1 + 0.5, y1 + 0.5, 0)))
+    told = solver.FoldDescription(8, angle=None, handles=handles)
+    first = solver.fold(pattern, told)
+    assert first.status is solver.Outcome.OUT_OF_REACH
+    monkeypatch.setattr(fold_module, "_too_far_apart", lambda handles, net: "")
+    both = solver.fold(pattern, told)
+    assert both.iterations > first.iterations
+    assert np.array_equal(both.positions, first.positions)
