@@ -16,13 +16,13 @@ import signal
 import subprocess
 import sys
 import time
-import traceback
 from pathlib import Path
 from random import Random
-from types import FrameType
+
+from benchmarks import fuzz_run
+from benchmarks.fuzz_run import OUT
 
 ROOT = Path(__file__).resolve().parents[1]
-OUT = ROOT / "out" / "fuzz"
 #: Names of doors, as in benchmarks.fuzz_inputs: not imported here, atheris has to see it first.
 DOORS = ("svg", "handles", "description")
 #: Inputs that the breeding begins with, for each door.
@@ -35,14 +35,6 @@ SLOW, HUNG = 2.0, 30
 MEMORY = 1500
 
 
-class _HungError(BaseException):
-    """One input took too long. No Exception: nothing may catch it on the way."""
-
-
-def _alarm(_signal: int, _frame: FrameType | None) -> None:
-    raise _HungError
-
-
 def breed(door: str, seconds: int, seed: int) -> None:
     """Runs libFuzzer, which ends the process, for one door."""
     import atheris  # no part of the product or of its tests
@@ -53,7 +45,7 @@ def breed(door: str, seconds: int, seed: int) -> None:
     folder = OUT / "bred" / door
     folder.mkdir(parents=True, exist_ok=True)
     for k in range(SEEDS):
-        (folder / f"seed-{k}").write_bytes(fuzz_inputs.DOORS[door][0](Random(k))[:LONGEST])
+        (folder / f"seed-{k}").write_bytes(fuzz_inputs.DOORS[door].make(Random(k))[:LONGEST])
     if door == "svg":
         for path in fuzz_inputs.FOLDER.glob("*.svg"):
             (folder / path.stem).write_bytes(path.read_bytes())
@@ -61,19 +53,18 @@ def breed(door: str, seconds: int, seed: int) -> None:
         for k in range(SEEDS):
             (folder / f"true-{k}").write_text(json.dumps(fuzz_inputs.true_description(Random(k))))
     known: set[str] = set()
-    signal.signal(signal.SIGVTALRM, _alarm)
+    signal.signal(signal.SIGVTALRM, fuzz_run.alarm)
 
     def attempt(data: bytes) -> None:
         """One input. What is wrong is kept, once for each place, and the breeding goes on."""
         said, start = "", time.process_time()
         signal.setitimer(signal.ITIMER_VIRTUAL, HUNG)
         try:
-            fuzz_inputs.attempt(door, data, scratch)
-        except _HungError:
+            fuzz_run.attempt(fuzz_inputs.DOORS[door], data, scratch)
+        except fuzz_run.HungError:
             said = "hang"
         except Exception as error:
-            place = traceback.extract_tb(error.__traceback__)[-1]
-            said = f"{type(error).__name__} in {Path(place.filename).name}:{place.lineno}"
+            said = fuzz_run.said_of(error)
         finally:
             signal.setitimer(signal.ITIMER_VIRTUAL, 0)
         if not said and time.process_time() - start > 3 * SLOW:
@@ -96,7 +87,7 @@ def breed(door: str, seconds: int, seed: int) -> None:
             return fuzz_inputs.spoilt(rng, data)[:longest]
         return json.dumps(fuzz_inputs.changed_json(rng, value)).encode()[:longest]
 
-    with fuzz_inputs.scratch() as name:
+    with fuzz_run.scratch() as name:
         scratch = Path(name)
         arguments = [f"-max_total_time={seconds}", f"-max_len={LONGEST}", f"-rss_limit_mb={MEMORY}", "-timeout=120"]
         arguments += [f"-seed={seed}", "-print_final_stats=1", str(folder)]
@@ -109,12 +100,11 @@ def again(door: str, path: Path) -> str:
     from benchmarks import fuzz_inputs
 
     start = time.process_time()
-    with fuzz_inputs.scratch() as folder:
+    with fuzz_run.scratch() as folder:
         try:
-            fuzz_inputs.attempt(door, path.read_bytes(), Path(folder))
+            fuzz_run.attempt(fuzz_inputs.DOORS[door], path.read_bytes(), Path(folder))
         except Exception as error:
-            place = traceback.extract_tb(error.__traceback__)[-1]
-            return f"{type(error).__name__} in {Path(place.filename).name}:{place.lineno}: {error}"
+            return f"{fuzz_run.said_of(error)}: {error}"
     spent = time.process_time() - start
     return f"slow: {spent:.1f} s" if spent > SLOW else ""
 

@@ -1,6 +1,7 @@
 """Many drawings: each in its own folder and its own process, what is finished is not done again."""
 
 import csv
+import errno
 import hashlib
 import io
 import json
@@ -42,6 +43,9 @@ FOLDED_CODES = (0, 1)
 
 #: What is said of a process that ended without results.
 CRASHED = 3
+
+#: A list of drawings that is longer is none.
+MAX_LIST_BYTES = 1 << 20
 
 #: The package of the whole extension.
 EXTENSION = __package__.rpartition(".")[0]
@@ -124,7 +128,7 @@ def find_drawings(source: Path) -> list[Path]:
         elif source.suffix.lower() in DRAWING_SUFFIXES:
             drawings = [source]
         else:
-            lines = (line.strip() for line in source.read_text(encoding="utf-8").splitlines())
+            lines = [line.strip() for line in _list_text(source).splitlines()]
             drawings = [source.parent / line for line in lines if line and not line.startswith("#")]
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not text"
@@ -134,16 +138,31 @@ def find_drawings(source: Path) -> list[Path]:
     return drawings
 
 
+def _list_text(source: Path) -> str:
+    """The text of a list. Raises OSError, UnicodeDecodeError, BatchError."""
+    with source.open("rb") as stream:
+        data = stream.read(MAX_LIST_BYTES + 1)
+    if len(data) > MAX_LIST_BYTES:
+        raise BatchError(f"{source}: cannot be read: it is too long for a list of drawings")
+    if b"\0" in data:
+        raise BatchError(f"{source}: cannot be read: it is not text")
+    return data.decode("utf-8")
+
+
 def is_finished(task: Task) -> Outcome | None:
     """The outcome of an earlier run, if it was made from the same drawing and options and is all there."""
     try:
         stamp = json.loads((task.folder / STAMP).read_text(encoding="utf-8"))
-        json.loads((task.folder / REPORT).read_text(encoding="utf-8"))
+        dict(_flat(json.loads((task.folder / REPORT).read_text(encoding="utf-8"))))
         same = stamp["made_from"] == task.stamp() and stamp["report_sha256"] == _sha256(task.folder / REPORT)
         if not same or not all((task.folder / name).is_file() for name in (*RESULTS, task.picture)):
             return None
-        return Outcome(task, stamp["exit_code"], stamp["sentence"], stamp["seconds"], skipped=True)
-    except (OSError, ValueError, KeyError, TypeError):
+        code, sentence, seconds = stamp["exit_code"], stamp["sentence"], stamp["seconds"]
+        if code not in FOLDED_CODES or not isinstance(sentence, str):
+            return None
+        return Outcome(task, int(code), " ".join(sentence.split()), float(seconds), skipped=True)
+    # Whatever it holds instead, the drawing is folded again.
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
         return None
 
 
@@ -273,7 +292,11 @@ def _named_content(option: str) -> str:
 
 
 def _sha256(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    """Raises OSError, also for what has no end, such as a device."""
+    if path.exists() and not path.is_file():
+        raise OSError(errno.EINVAL, "it is not a file", str(path))
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def _sentence(report: Path) -> str:
@@ -310,4 +333,6 @@ def _tile(outcome: Outcome) -> contact_sheet.Tile:
 
 def _say(outcome: Outcome, done: int, total: int) -> None:
     how = "finished before" if outcome.skipped else f"{outcome.seconds:.1f} s"
-    print(f"[{done}/{total}] {outcome.task.folder.name}: {outcome.word} ({how}). {outcome.sentence}", flush=True)
+    words = f"[{done}/{total}] {outcome.task.folder.name}: {outcome.word} ({how}). {outcome.sentence}"
+    # Names of files need not be text.
+    print(words.encode("utf-8", "backslashreplace").decode("utf-8"), flush=True)

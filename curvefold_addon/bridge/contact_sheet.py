@@ -85,6 +85,8 @@ def _fitted(picture: Path | None) -> Pixels:
     if picture is None:
         return tile
     pixels = _read(picture)
+    if not pixels.size:  # no picture, whatever it is called
+        return tile
     factor = min(TILE_HEIGHT / pixels.shape[0], TILE_WIDTH / pixels.shape[1], 1.0)
     height = max(1, round(pixels.shape[0] * factor))
     width = max(1, round(pixels.shape[1] * factor))

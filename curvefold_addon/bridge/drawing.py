@@ -189,9 +189,11 @@ class _Reading:
             return rings[0].points, []
         areas = [_area(curve.points) for curve in closed]
         outline = closed[int(np.argmax(areas))]
+        polygon = shapely.Polygon(outline.points)
+        if len(curves) == 1 or not polygon.is_valid:  # which is judged later, with its place
+            return outline.points, []
         holes = []
-        # Validity is judged later, with its place; here only what lies where.
-        inside = shapely.Polygon(outline.points).buffer(0).buffer(JOIN * self._size)
+        inside = polygon.buffer(JOIN * self._size)
         for curve in curves:
             if curve is outline:
                 continue

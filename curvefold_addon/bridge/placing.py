@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ... import solver
+
 Array = NDArray[np.float64]
 
 
@@ -18,11 +20,14 @@ def world_matrix(item: Any) -> Array:
 
 def matrix_on(sheet: Any, item: Any) -> Array:
     """(4,4) from an object's coordinates to a sheet's. Exact where the object hangs below the
-    sheet; otherwise the sheet's scale must not be zero."""
+    sheet; otherwise a sheet whose scale is zero raises PatternError."""
     matrix, rest = _settings_up_to(item, sheet)
     if rest == sheet:
         return matrix
-    return np.asarray(np.linalg.inv(world_matrix(sheet)) @ world_matrix(item))
+    try:
+        return np.asarray(np.linalg.inv(world_matrix(sheet)) @ world_matrix(item))
+    except np.linalg.LinAlgError as error:
+        raise solver.PatternError("its scale is zero", element=sheet.name) from error
 
 
 def _settings_up_to(item: Any, top: Any) -> tuple[Array, Any]:

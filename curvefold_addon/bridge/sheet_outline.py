@@ -40,6 +40,8 @@ def make_sheet(item: Any, collection: Any) -> Any:
     strands = [strand.transformed(matrix) for strand in strands if len(strand.cubics)]
     if not strands:
         raise solver.PatternError("it has no outline", element=item.name)
+    if not all(np.isfinite(strand.cubics).all() for strand in strands):
+        raise solver.PatternError("a point of it is not finite", element=item.name)
     frame = _frame(strands, matrix, item.name)
     curve = drawing_objects.new_curve(f"{item.name} Sheet")
     for strand in strands:

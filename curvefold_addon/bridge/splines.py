@@ -14,8 +14,9 @@ Array = NDArray[np.float64]
 
 #: How far cubics may be from a NURBS curve that they stand for, relative to its size: single precision.
 _NURBS_ERROR = 1e-7
-#: Cubics in one span of a NURBS curve at most; a usual one needs from 1 to 16.
-_MOST_CUBICS_IN_SPAN = 256
+#: Cubics in one span of a NURBS curve at most; a usual one needs from 1 to 16, and with more of them the error
+#: falls sixteenfold each time they are doubled. Where it does not, weights of both signs have made a pole.
+_USUAL_CUBICS_IN_SPAN, _MOST_CUBICS_IN_SPAN = 16, 256
 #: A segment whose handles lie this near to its chord (relative to the chord) is straight: single precision.
 _STRAIGHT = 1e-6
 
@@ -113,16 +114,17 @@ def nurbs_knots(count: int, order: int, cyclic: bool, endpoint: bool, bezier: bo
 
 def _hermite_cubics(coefficients: Array, lengths: Array) -> Array:
     """Cubics along weighted polynomials (order, pieces, 4), highest power first: as many as they need."""
-    parts = 1
+    parts, before = 1, np.inf
     while True:
         place, tangent = _evaluate(coefficients, lengths, 2 * parts)
         start, middle, end = place[:, :-2:2], place[:, 1::2], place[:, 2::2]
         third = tangent / (3.0 * parts)
         first, second = start + third[:, :-2:2], end - third[:, 2::2]
         miss = np.abs(0.125 * (start + end) + 0.375 * (first + second) - middle).max()
-        if miss <= _NURBS_ERROR * np.ptp(place, axis=(0, 1)).max() or parts >= _MOST_CUBICS_IN_SPAN:
+        enough = miss <= _NURBS_ERROR * np.ptp(place, axis=(0, 1)).max() or parts >= _MOST_CUBICS_IN_SPAN
+        if enough or (parts > _USUAL_CUBICS_IN_SPAN and not miss < 0.5 * before):
             return np.stack([start, first, second, end], axis=2).reshape(-1, 4, 3)
-        parts *= 2
+        parts, before = 2 * parts, miss
 
 
 def _evaluate(coefficients: Array, lengths: Array, parts: int) -> tuple[Array, Array]:

@@ -4,6 +4,7 @@ from typing import ClassVar
 
 import bpy
 
+from ... import solver
 from ..bridge import crease_making, drawing_objects, strokes
 from ..drawing_context import NO_SHEET, active_sheet, drawing_changed, in_object_mode, select_only
 
@@ -29,11 +30,15 @@ class MakeCrease(bpy.types.Operator):
         sheet = active_sheet(context)
         made = []
         for item in _candidates(context):
-            if item.type == "CURVE":
-                crease_making.lay_curve(item, sheet)
-                made.append(item)
-                continue
-            crease = crease_making.lay_strokes(item, sheet)
+            try:
+                if item.type == "CURVE":
+                    crease_making.lay_curve(item, sheet)
+                    made.append(item)
+                    continue
+                crease = crease_making.lay_strokes(item, sheet)
+            except solver.CurvefoldError as error:
+                self.report({"ERROR"}, str(error))
+                return {"CANCELLED"}
             if crease is None:
                 self.report({"WARNING"}, f"{item.name}: it has no stroke in this frame, so no crease was made")
             else:

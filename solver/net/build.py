@@ -145,7 +145,7 @@ def _arrange(pattern: CreasePattern, frame: NetFrame) -> Arrangement:
 def _crossings(lines: list[FloatArray]) -> int:
     """About how often the segments of polylines cross each other; exact for drawings that are not large."""
     segments = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in lines])
-    step = -(-len(segments) // _CROSSING_SAMPLE)
+    step = max(1, -(-len(segments) // _CROSSING_SAMPLE))
     sample = shapely.linestrings(segments[::step])
     return len(shapely.STRtree(sample).query(sample, predicate="crosses")[0]) // 2 * step**2
 

@@ -100,7 +100,8 @@ def _lines(low: float, high: float, wishes: list[tuple[int, float]]) -> tuple[Fl
         gaps = np.abs(np.array(fixed) - value)
         if gaps.min() >= MIN_GAP:
             fixed.append(value)
-        elif gaps.min() > 1e-6 and urgency == 0 and not any(abs(value - m) <= 1e-6 for m in missed):
+        # They come in order: only the last one can be the same.
+        elif gaps.min() > 1e-6 and urgency == 0 and not (missed and value - missed[-1] <= 1e-6):
             missed.append(value)
     marks = np.sort(np.array(fixed))
     parts = [np.linspace(a, b, max(1, int(np.round(b - a))), endpoint=False) for a, b in itertools.pairwise(marks)]

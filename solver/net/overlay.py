@@ -78,7 +78,7 @@ def overlay(arrangement: Arrangement, grid: OrthogonalGrid) -> Overlay:
     segments, chain, border = segments[keep], chain[keep], border[keep]
     while True:
         left, right, loop_start, loop_nodes, area = _faces(points, segments, border, sheet)
-        island = _island(points, line_x, line_y, segments, chain, border, left, right, area)
+        island = _islands(points, line_x, line_y, segments, chain, border, left, right, area)
         if not island.any():
             break
         lost = sorted(set(lost) | set(chain[island].tolist()))
@@ -112,7 +112,7 @@ def overlay(arrangement: Arrangement, grid: OrthogonalGrid) -> Overlay:
     )
 
 
-def _island(
+def _islands(
     points: FloatArray,
     line_x: IntArray,
     line_y: IntArray,
@@ -123,14 +123,17 @@ def _island(
     right: IntArray,
     area: FloatArray,
 ) -> BoolArray:
-    """Crease segments (S,) to give up around one patch that too few crease points would hold; all False: none.
+    """Crease segments (S,) to give up around patches that too few crease points would hold; all False: none.
 
     A patch hangs on its neighbours at points on grid lines; where these span no area it could turn freely.
+    A patch that another one joins waits for the next turn.
     """
     inner = ~border & (left >= 0) & (right >= 0)
     through = inner & (chain < 0)
     patch = _components(left[through], right[through], len(area))
-    none = np.zeros(len(segments), dtype=bool)
+    given = np.zeros(len(segments), dtype=bool)
+    joins, joined = np.zeros((2, int(patch.max()) + 1), dtype=bool)
+    lengths = np.hypot(*(points[segments[:, 1]] - points[segments[:, 0]]).T)
     held = (line_x >= 0) | (line_y >= 0)
     rim = inner & (chain >= 0)
     patch_area = np.bincount(patch, weights=area)
@@ -143,10 +146,12 @@ def _island(
         if patch_area[one] > MIN_PIECE and (hull.area >= MIN_HOLD or hull.length >= MIN_HINGE):
             continue
         other = np.where(patch[left] == one, patch[right], patch[left])
-        lengths = np.hypot(*(points[segments[:, 1]] - points[segments[:, 0]]).T)
-        shared = np.bincount(other[mine], weights=lengths[mine])
-        return np.asarray(mine & (other == int(shared.argmax())))
-    return none
+        most = int(np.bincount(other[mine], weights=lengths[mine]).argmax())
+        if joined[one] or joins[most]:
+            continue
+        joins[one] = joined[most] = True
+        given |= mine & (other == most)
+    return given
 
 
 def _line_of(values: FloatArray, lines: FloatArray) -> IntArray:

@@ -64,17 +64,31 @@ def build_render_map(
             loops.append(number[part])
             starts.append(starts[-1] + len(part))
             patches.append(over.patch[f])
+    face_start, corners = np.array(starts, dtype=np.int64), np.concatenate(loops)
     edges, chains = _crease_edges(over, number)
+    # Between two creases that all but touch, a face may vanish with its edges.
+    shown = _are_sides(edges, face_start, corners)
+    edges, chains = edges[shown], chains[shown]
     return RenderMap(
         weights,
         uv[keep],
-        np.array(starts, dtype=np.int64),
-        np.concatenate(loops),
+        face_start,
+        corners,
         np.array(patches, dtype=np.int64),
         edges,
         chain_crease[chains],
         chains,
     )
+
+
+def _are_sides(edges: IntArray, face_start: IntArray, corners: IntArray) -> BoolArray:
+    """Whether each of the edges (n,2) is one of the loops (F+1,), (L,)."""
+    following = np.arange(1, len(corners) + 1)
+    following[face_start[1:] - 1] = face_start[:-1]
+    sides = np.sort(np.column_stack([corners, corners[following]]), axis=1)
+    size = int(corners.max()) + 1
+    asked = np.sort(edges, axis=1)
+    return np.isin(asked[:, 0] * size + asked[:, 1], sides[:, 0] * size + sides[:, 1])
 
 
 def _simple_loops(points: FloatArray, loop: IntArray) -> list[IntArray]:

@@ -124,7 +124,7 @@ def _trim(
     border = sheet.boundary
     shapely.prepare(sheet)
     for k, points in enumerate(lines):
-        line = LineString(points)
+        line = LineString(points) if len(points) > 1 else LineString()
         if line.length < tolerance:
             notes.append(f"{labels[k]} is shorter than the snap tolerance and was left out")
             continue

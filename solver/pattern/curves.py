@@ -8,10 +8,14 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ..arrays import FloatArray
+from ..errors import PatternError
 from .crease_pattern import Crease
 
 #: Turns above this are corners of the drawing, smaller ones are samples of a smooth curve.
 CORNER = np.radians(30.0)
+#: Points of one sampled crease at most: a thousand sheets long at a usual resolution. What lies off the sheet is
+#: sampled as finely as what lies on it.
+_MOST_POINTS = 400_000
 #: A segment this many times longer than the median is a straight part between curved ones.
 _STRAIGHT_RATIO = 3.0
 
@@ -21,7 +25,15 @@ def sample_crease(crease: Crease, spacing: float) -> FloatArray:
 
     Control points are used where the drawing has them; otherwise coarse samples of a smooth curve are
     joined by a cubic spline. Corners (turns above 30°) stay. A closed crease repeats its first point.
+    Raises PatternError when the crease is so long that this would be too many.
     """
+    given = crease.points if crease.beziers is None else crease.beziers.reshape(-1, 2)
+    cells = float(np.hypot(*np.diff(given, axis=0).T).sum()) / spacing
+    if not cells <= _MOST_POINTS:
+        raise PatternError(
+            "it reaches too far beyond the sheet to be sampled; cut it at the border",
+            element=crease.name or "crease",
+        )
     if crease.beziers is not None and len(crease.beziers):
         points = _sample_beziers(crease.beziers, spacing)
         if crease.closed and not np.array_equal(points[0], points[-1]):
@@ -53,11 +65,12 @@ def _sample_beziers(beziers: FloatArray, spacing: float) -> FloatArray:
     for control in beziers:
         chord = control[3] - control[0]
         size = float(np.abs(np.diff(control, axis=0)).sum())
-        # Distance of the inner control points from the chord: nothing there means a straight segment.
+        # Distance of the inner control points from the chord: nothing there means a straight segment. A segment
+        # that ends where it starts has no chord, and is a loop.
         offset = np.abs(
             chord[0] * (control[1:3, 1] - control[0, 1]) - chord[1] * (control[1:3, 0] - control[0, 0])
         ).max()
-        straight = offset <= 1e-12 * size * max(float(np.hypot(*chord)), 1e-300) and size > 0
+        straight = chord.any() and offset <= 1e-12 * size * max(float(np.hypot(*chord)), 1e-300)
         length = float(np.hypot(*np.diff(control, axis=0).T).sum())
         count = 1 if straight else max(4, int(np.ceil(length / spacing)))
         t = np.linspace(0.0, 1.0, count + 1)[:, None]

@@ -45,6 +45,47 @@ def test_any_list_is_read_or_refused(extension, data, tmp_path_factory):
         assert batch.find_drawings(path)
 
 
+@pytest.mark.skipif(os.name != "posix", reason="needs devices and pipes")
+@pytest.mark.parametrize("line", ["/dev/zero", "pipe.svg"])
+def test_what_has_no_end_is_one_failure(extension, tmp_path, capsys, line):
+    os.mkfifo(tmp_path / "pipe.svg")
+    (tmp_path / "list.txt").write_text(line)
+    out = tmp_path / "out"
+    assert extension("curvefold_addon.cli").main(["batch", str(tmp_path / "list.txt"), "--out", str(out)]) == 1
+    assert "it is not a file" in (out / "summary.csv").read_text()
+
+
+@pytest.mark.parametrize("data", [b"a\0.svg", b"a.svg\n" * 200_000], ids=["NUL", "far too long"])
+def test_a_list_that_is_none_is_refused_in_a_line(extension, tmp_path, capsys, data):
+    (tmp_path / "list.txt").write_bytes(data)
+    argv = ["batch", str(tmp_path / "list.txt"), "--out", str(tmp_path / "out")]
+    assert extension("curvefold_addon.cli").main(argv) == 2
+    said = capsys.readouterr().err.strip()
+    assert said.startswith("curvefold: ")
+    assert len(said.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [{"exit_code": "0"}, {"exit_code": 7}, {"sentence": 5}, {"seconds": None}, {"seconds": 10**400}],
+    ids=repr,
+)
+def test_a_stamp_that_says_something_odd_is_not_believed(extension, tmp_path, changed):
+    batch = extension("curvefold_addon.batch")
+    drawing = tmp_path / "a.svg"
+    drawing.write_text("<svg/>")
+    (task,) = batch._tasks([drawing], tmp_path / "out", False, [])
+    task.folder.mkdir(parents=True)
+    for name in (*batch.RESULTS, task.picture):
+        (task.folder / name).write_text("{}")
+    stamp = {"made_from": task.stamp(), "report_sha256": batch._sha256(task.folder / batch.REPORT)}
+    stamp |= {"exit_code": 0, "sentence": "Folded.", "seconds": 1.0}
+    (task.folder / batch.STAMP).write_text(json.dumps(stamp))
+    assert batch.is_finished(task) is not None
+    (task.folder / batch.STAMP).write_text(json.dumps(stamp | changed))
+    assert batch.is_finished(task) is None
+
+
 def command(folder, out):
     return [sys.executable, "-m", "curvefold_addon", "batch", str(folder), "--out", str(out), "--jobs", "1", *QUICK]
 

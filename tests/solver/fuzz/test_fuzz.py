@@ -14,7 +14,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import solver
-from benchmarks.fuzz_inputs import DOORS, RESOLUTION, TRIED_ON, attempt, made_svg, scratch
+from benchmarks.fuzz_inputs import DOORS, RESOLUTION, TRIED_ON, made_svg, not_sides
+from benchmarks.fuzz_run import attempt, scratch
 from solver.description import parse_handles
 
 #: Inputs for each door; ``python -m benchmarks.fuzz`` makes as many as one likes.
@@ -31,7 +32,7 @@ ANY_JSON = st.recursive(
 @given(rng=st.randoms(use_true_random=False))
 def test_spoilt_files_are_refused_or_read(door: str, rng: Random) -> None:
     with scratch() as folder:
-        attempt(door, DOORS[door][0](rng), Path(folder))
+        attempt(DOORS[door], DOORS[door].make(rng), Path(folder))
 
 
 @pytest.mark.parametrize("door", DOORS)
@@ -39,7 +40,7 @@ def test_spoilt_files_are_refused_or_read(door: str, rng: Random) -> None:
 @given(data=st.binary(max_size=300))
 def test_any_bytes_are_refused(door: str, data: bytes) -> None:
     with scratch() as folder:
-        attempt(door, data, Path(folder))
+        attempt(DOORS[door], data, Path(folder))
 
 
 @FEW
@@ -96,6 +97,31 @@ def test_a_curve_with_a_point_given_twice_is_a_curve() -> None:
         model.advance(3)
         shapes.append(model.positions)
     assert np.array_equal(*shapes)
+
+
+def test_a_crease_without_length_is_left_out() -> None:
+    box = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+    point = solver.Crease([(0.5, 0.5), (0.5, 0.5)])
+    with pytest.raises(solver.PatternError, match="no crease lies on the sheet"):
+        solver.build_net(solver.CreasePattern(box, creases=[point]), RESOLUTION)
+
+
+def test_creases_that_all_but_touch_mark_sides_of_faces_only() -> None:
+    """Between them a face of the shown surface may vanish."""
+    rng = np.random.default_rng(36)
+    t = np.linspace(0, 6.2, int(rng.integers(20, 60)))[:, None]
+    swing, harmonic = 0.3 * rng.normal(size=(2, 3)), np.arange(1, 4)
+
+    def scribble(shift: float) -> solver.Crease:
+        x = (swing[0] * np.sin(harmonic * t + shift)).sum(axis=1)
+        y = (swing[1] * np.cos(harmonic * t + shift)).sum(axis=1)
+        return solver.Crease(0.5 + np.column_stack([x, y]))
+
+    box = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+    gap = rng.choice([1e-3, 5e-3, 2e-2])
+    net = solver.build_net(solver.CreasePattern(box, creases=[scribble(0.0), scribble(gap)]), RESOLUTION)
+    assert len(net.render_map.crease_edges) > 50
+    assert not_sides(net) == []
 
 
 def test_the_generator_reaches_the_net() -> None:

@@ -38,6 +38,24 @@ def test_a_straight_cubic_segment_is_two_points() -> None:
     assert np.array_equal(sampled, control[0, [0, 3]])
 
 
+@pytest.mark.parametrize("scale", [1e7, 1e150, 1e300])
+@pytest.mark.parametrize("cubic", [False, True])
+def test_a_crease_that_reaches_far_beyond_all_sheets_is_refused(scale: float, cubic: bool) -> None:
+    """Before memory is gone: it would be sampled as finely out there."""
+    points = scale * np.array([[0, 0], [1, 0.5], [2, 2], [3, 1.5], [4, 1.0]])
+    crease = solver.Crease(points=points, beziers=points[None, :4] if cubic else None, name="Far")
+    with pytest.raises(solver.PatternError, match="Far: it reaches too far"):
+        sample_crease(crease, 0.01)
+
+
+def test_one_cubic_segment_that_ends_where_it_starts_is_a_loop() -> None:
+    control = np.array([[[0.5, 0.2], [1.1, 0.9], [-0.1, 0.9], [0.5, 0.2]]])
+    loop = solver.Crease(points=[[0.5, 0.2], [0.7, 0.6], [0.3, 0.6]], closed=True, beziers=control)
+    sampled = sample_crease(loop, 0.01)
+    assert len(sampled) > 100
+    assert shapely.Polygon(sampled).area == pytest.approx(0.126, rel=0.01)
+
+
 @pytest.mark.parametrize("count", [16, 24, 64])
 def test_a_circle_from_samples_is_round(count: int) -> None:
     sampled = sample_crease(solver.Crease(points=circle(count), closed=True), 0.02)
