@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from mathutils import Vector
+from papers import paper_of, rests, shape
 
 #: Two arcs that curve the same way, far enough apart to fold by themselves.
 ARCS = """<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100">
@@ -14,20 +15,10 @@ ARCS = """<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" v
 """
 
 
-def shape(mesh: bpy.types.Mesh) -> bytes:
-    return bytes(mesh["curvefold_positions"])
-
-
 @pytest.fixture
 def paper(extension, tmp_path):
     """A paper with two creases, flat."""
-    path = tmp_path / "arcs.svg"
-    path.write_text(ARCS)
-    pattern = extension("solver").read_pattern(path)
-    sheet = extension("curvefold_addon.bridge.drawing").add_drawing(pattern, bpy.context.collection)
-    bpy.context.view_layer.objects.active = sheet
-    assert bpy.ops.curvefold.make_paper(resolution=12) == {"FINISHED"}
-    return bpy.context.active_object
+    return paper_of(extension, tmp_path, ARCS, resolution=12)
 
 
 @pytest.fixture
@@ -51,13 +42,6 @@ def angles(live, paper) -> list[float]:
 
 def other(side: str) -> str:
     return {"V": "M", "M": "V"}[side]
-
-
-def rests(live, paper) -> bool:
-    """Whether settling moves nothing."""
-    before = shape(paper.data)
-    live.settle(paper.data)
-    return shape(paper.data) == before
 
 
 # --- one entry a crease ---------------------------------------------------------------------------------------

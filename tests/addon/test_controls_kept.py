@@ -5,6 +5,7 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 import pytest
+from papers import paper_of, rests, shape
 
 #: A strip whose ends are as long as each other, with two arcs.
 STRIP = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="40mm" viewBox="0 0 120 40">
@@ -15,27 +16,12 @@ STRIP = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="40mm" v
 """
 
 
-def shape(mesh: bpy.types.Mesh) -> bytes:
-    return bytes(mesh["curvefold_positions"])
-
-
-def rests(live, paper) -> bool:
-    before = shape(paper.data)
-    live.settle(paper.data)
-    return shape(paper.data) == before
-
-
 @pytest.fixture
 def strip(extension, live, tmp_path):
     """A paper with two creases, folded."""
-    path = tmp_path / "strip.svg"
-    path.write_text(STRIP)
-    pattern = extension("solver").read_pattern(path)
-    sheet = extension("curvefold_addon.bridge.drawing").add_drawing(pattern, bpy.context.collection)
-    bpy.context.view_layer.objects.active = sheet
-    assert bpy.ops.curvefold.make_paper(resolution=18, fold=40.0) == {"FINISHED"}
-    live.settle(bpy.context.active_object.data)
-    return bpy.context.active_object
+    made = paper_of(extension, tmp_path, STRIP, resolution=18, fold=40.0)
+    live.settle(made.data)
+    return made
 
 
 def joint(settings, family: str, **values: object) -> None:

@@ -4,16 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from mathutils import Matrix
-
-
-def shape(mesh: bpy.types.Mesh) -> bytes:
-    return bytes(mesh["curvefold_positions"])
-
-
-def rests(live, paper) -> bool:
-    before = shape(paper.data)
-    live.settle(paper.data)
-    return shape(paper.data) == before
+from papers import rests, shape
 
 
 def fold_angle(live, paper) -> float:

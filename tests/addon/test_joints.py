@@ -7,40 +7,13 @@ import bpy
 import numpy as np
 import pytest
 from mathutils import Vector
+from papers import edit, paper_of, rests, select_vertices, shape
 
 STRIP = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="20mm" viewBox="0 0 120 20">
 <rect x="0" y="0" width="120" height="20" fill="none" stroke="black"/>
 <path d="M 60 0 L 60 20" fill="none" stroke="#f0f"/>
 </svg>
 """
-
-
-def shape(mesh: bpy.types.Mesh) -> bytes:
-    return bytes(mesh["curvefold_positions"])
-
-
-def rests(live, paper) -> bool:
-    before = shape(paper.data)
-    live.settle(paper.data)
-    return shape(paper.data) == before
-
-
-def edit(paper):
-    """Edit Mode with nothing selected; its BMesh, to be kept as long as the flat places of its vertices."""
-    bpy.context.view_layer.objects.active = paper
-    bpy.ops.object.mode_set(mode="EDIT")
-    bpy.ops.mesh.select_mode(type="VERT")
-    bpy.ops.mesh.select_all(action="DESELECT")
-    edited = bmesh.from_edit_mesh(paper.data)
-    layer = edited.loops.layers.uv["flat"]
-    return edited, {v: v.link_loops[0][layer].uv.copy() for v in edited.verts if v.link_loops}
-
-
-def select_vertices(paper, *places):
-    _edited, flat = edit(paper)
-    for place in places:
-        min(flat, key=lambda v: (flat[v] - Vector(place)).length).select = True
-    bmesh.update_edit_mesh(paper.data)
 
 
 def joints(paper):
@@ -223,14 +196,8 @@ def test_a_patch_is_chosen_by_a_face(paper):
 
 
 @pytest.fixture
-def strip(extension, tmp_path, live):
-    path = tmp_path / "strip.svg"
-    path.write_text(STRIP)
-    pattern = extension("solver").read_pattern(path)
-    sheet = extension("curvefold_addon.bridge.drawing").add_drawing(pattern, bpy.context.collection)
-    bpy.context.view_layer.objects.active = sheet
-    assert bpy.ops.curvefold.make_paper(resolution=18) == {"FINISHED"}
-    return bpy.context.active_object
+def strip(extension, tmp_path):
+    return paper_of(extension, tmp_path, STRIP, resolution=18)
 
 
 def select_ends(paper, *edges):

@@ -8,16 +8,7 @@ import bpy
 import numpy as np
 import pytest
 from mathutils import Matrix, Vector
-
-
-def shape(mesh: bpy.types.Mesh) -> bytes:
-    return bytes(mesh["curvefold_positions"])
-
-
-def rests(live, paper) -> bool:
-    before = shape(paper.data)
-    live.settle(paper.data)
-    return shape(paper.data) == before
+from papers import edit, rests, shape
 
 
 def entries(paper):
@@ -38,13 +29,9 @@ def folded_paper(paper, live):
 
 def select(paper, *xs, others=False) -> None:
     """Edit Mode with the vertices of the crease selected that are nearest to these x, or with all others."""
-    bpy.context.view_layer.objects.active = paper
-    bpy.ops.object.mode_set(mode="EDIT")
-    bpy.ops.mesh.select_mode(type="VERT")
-    bpy.ops.mesh.select_all(action="DESELECT")
-    edited = bmesh.from_edit_mesh(paper.data)
-    flat, crease = edited.loops.layers.uv["flat"], edited.edges.layers.int["crease"]
-    x = {vertex: vertex.link_loops[0][flat].uv.x for vertex in edited.verts}
+    edited, flat = edit(paper)
+    crease = edited.edges.layers.int["crease"]
+    x = {vertex: place.x for vertex, place in flat.items()}
     creased = [vertex for vertex in x if any(edge[crease] >= 0 for edge in vertex.link_edges)]
     for vertex in x:
         vertex.select = others and vertex not in creased

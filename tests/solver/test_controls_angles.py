@@ -6,18 +6,11 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from settling import settled
 
 import solver
 from solver.controls.amount import Amount
 from solver.controls.angle import Angle
-
-
-def settle(model: solver.FoldModel, most: int = 1200) -> solver.Measurement:
-    done = 0
-    while model.status is solver.Status.RUNNING and done < most:
-        done += model.advance(20).iterations
-    assert model.status is solver.Status.SETTLED
-    return solver.measure(model.net, model.positions)
 
 
 def medians(m: solver.Measurement) -> list[float]:
@@ -35,7 +28,7 @@ def test_b_is_reached_from_flat_by_its_angles_alone(exact: ModuleType, on_the_sh
         net = solver.build_net(cone.pattern(), resolution)
         model = solver.FoldModel(net)
         model.set_controls([Angle(60.0, crease=k) for k in (1, 2, 3, 4)])
-        m = settle(model)
+        m = settled(model)
         assert medians(m) == pytest.approx([60.0] * 4, abs=0.5)
         assert m.folded.all()
         places = on_the_sheet.some_places(net, 60)
@@ -58,7 +51,7 @@ def test_a_is_folded_as_deep_as_it_is_at_the_points_that_were_asked(
     places = net.frame.to_drawing(net.crease_points.position[inner])[1:-1:2]
     asked = state.fold_angle(places[:, 0])
     model.set_controls([Angle(float(a), at=tuple(p)) for a, p in zip(asked, places.tolist(), strict=True)])
-    m = settle(model)
+    m = settled(model)
     assert not model.findings
     nearest = [int(np.argmin(np.hypot(*(m.crease_position - p).T))) for p in places]
     assert m.fold_angle[nearest] == pytest.approx(asked, abs=1.5)
@@ -73,11 +66,11 @@ def test_a_signed_angle_chooses_the_side_and_takes_a_folded_crease_through_flat(
     model = solver.FoldModel(solver.build_net(drawings.one_arc(), 12))
     side = "V" if degrees > 0 else "M"
     model.set_controls([Angle(degrees, crease=1, signed=True)])
-    m = settle(model)
+    m = settled(model)
     assert model.found_assignments == (side,)
     assert medians(m) == pytest.approx([50.0], abs=0.5)
     model.set_controls([Angle(-degrees, crease=1, signed=True)])
-    m = settle(model)
+    m = settled(model)
     assert model.found_assignments == ("M" if side == "V" else "V",)
     assert medians(m) == pytest.approx([50.0], abs=0.5)
     assert m.folded.all()
@@ -86,7 +79,7 @@ def test_a_signed_angle_chooses_the_side_and_takes_a_folded_crease_through_flat(
 def test_an_angle_ramps_from_the_present_one(drawings: ModuleType) -> None:
     model = solver.FoldModel(solver.build_net(drawings.one_arc(), 10))
     model.set_controls([Angle(50.0, crease=1)])
-    settle(model)
+    settled(model)
     model.set_controls([Angle(30.0, crease=1)])
     seen = []
     while model.status is solver.Status.RUNNING:
@@ -101,7 +94,7 @@ def test_an_angle_ramps_from_the_present_one(drawings: ModuleType) -> None:
 def test_one_point_is_folded_and_the_rest_of_the_crease_follows(drawings: ModuleType) -> None:
     model = solver.FoldModel(solver.build_net(drawings.two_arcs(), 12))
     model.set_controls([Angle(70.0, at=(0.5, 0.35))])
-    m = settle(model)
+    m = settled(model)
     here = int(np.argmin(np.hypot(*(m.crease_position - (0.5, 0.35)).T)))
     assert m.fold_angle[here] == pytest.approx(70.0, abs=1.5)
     assert m.folded.all()
@@ -113,20 +106,20 @@ def test_an_amount_takes_one_crease_another_part_of_the_way(drawings: ModuleType
     model = solver.FoldModel(solver.build_net(drawings.two_arcs(), 12))
     model.set_controls([Amount(1, part)])
     model.set_fold_angle(50)
-    assert medians(settle(model)) == pytest.approx([part * 50, 50.0], rel=0.03)
+    assert medians(settled(model)) == pytest.approx([part * 50, 50.0], rel=0.03)
     model.set_controls([])
-    assert medians(settle(model)) == pytest.approx([50.0, 50.0], rel=0.03)
+    assert medians(settled(model)) == pytest.approx([50.0, 50.0], rel=0.03)
 
 
 def test_an_angle_of_its_own_goes_before_the_drive(drawings: ModuleType) -> None:
     model = solver.FoldModel(solver.build_net(drawings.two_arcs(), 12))
     model.set_controls([Angle(20.0, crease=1), Angle(20.0, crease=2)])
     model.set_fold_angle(60)
-    assert medians(settle(model)) == pytest.approx([20.0, 20.0], rel=0.04)
+    assert medians(settled(model)) == pytest.approx([20.0, 20.0], rel=0.04)
     # The drive does not even pull.
     assert model.advance(0).objective["fold angle"] == 0.0
     model.set_controls([Angle(20.0, crease=2)])
-    assert medians(settle(model)) == pytest.approx([60.0, 20.0], rel=0.04)
+    assert medians(settled(model)) == pytest.approx([60.0, 20.0], rel=0.04)
 
 
 def test_angles_that_no_sheet_has_are_said_with_their_place_and_tear_nothing(drawings: ModuleType) -> None:

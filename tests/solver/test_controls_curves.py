@@ -6,18 +6,11 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from settling import settled
 
 import solver
 from solver.controls.curve import Curve
 from solver.controls.space_curve import CurveShape, build_curve, laid_onto, measure_curve
-
-
-def settle(model: solver.FoldModel, most: int = 1500) -> solver.Measurement:
-    done = 0
-    while model.status is solver.Status.RUNNING and done < most:
-        done += model.advance(20).iterations
-    assert model.status is solver.Status.SETTLED
-    return solver.measure(model.net, model.positions)
 
 
 def helix(radius: float, rise: float, turns: np.ndarray) -> np.ndarray:
@@ -79,7 +72,7 @@ def test_the_arc_flows_to_the_curve_of_state_a_and_folds_like_it(exact: ModuleTy
     crease = [state.at((x, float(state.g(np.array([x]))[0]))) for x in np.linspace(-1, 1, 201)]
     model = solver.FoldModel(net)
     model.set_controls([Curve(1, points=tuple(tuple(p.tolist()) for p in crease))])
-    m = settle(model)
+    m = settled(model)
     assert not model.findings
     inner = np.isfinite(m.fold_angle) & (np.abs(m.crease_position[:, 0]) < 0.75)
     error = m.fold_angle[inner] - state.fold_angle(m.crease_position[inner, 0])
@@ -94,7 +87,7 @@ def test_curvature_times_folds_an_arc_by_its_cosine(exact: ModuleType, times: fl
     net = solver.build_net(exact.arc(1.5).pattern(low=-1.3, high=0.7), 20)
     model = solver.FoldModel(net)
     model.set_controls([Curve(1, curvature_times=times)])
-    m = settle(model)
+    m = settled(model)
     assert np.nanmedian(m.fold_angle) == pytest.approx(2 * np.degrees(np.arccos(1 / times)), abs=2.0)
     assert not model.findings
 
@@ -104,15 +97,15 @@ def test_from_flat_the_same_words_ask_for_the_same_shape_whatever_was_before(exa
     half, whole = (Curve(1, curvature_times=1.4, progress=p, from_flat=True) for p in (0.5, 1.0))
     model = solver.FoldModel(net)
     model.set_controls([half])
-    angle = float(np.nanmedian(settle(model).fold_angle))
+    angle = float(np.nanmedian(settled(model).fold_angle))
     assert 0.3 < angle / (2 * np.degrees(np.arccos(1 / 1.4))) < 0.7
     again = solver.FoldModel(net, model.positions)
     again.set_controls([half])
-    assert np.nanmedian(settle(again).fold_angle) == pytest.approx(angle, abs=0.5)
+    assert np.nanmedian(settled(again).fold_angle) == pytest.approx(angle, abs=0.5)
     for start in (model.positions, None):
         model = solver.FoldModel(net, start)
         model.set_controls([whole])
-        assert np.nanmedian(settle(model).fold_angle) == pytest.approx(2 * np.degrees(np.arccos(1 / 1.4)), abs=2)
+        assert np.nanmedian(settled(model).fold_angle) == pytest.approx(2 * np.degrees(np.arccos(1 / 1.4)), abs=2)
         relative = solver.FoldModel(net, model.positions)
         relative.set_controls([whole])
         assert not relative.findings, "it is there already"
@@ -123,7 +116,7 @@ def test_curvature_plus_is_in_the_drawings_units(exact: ModuleType) -> None:
     net = solver.build_net(exact.arc(1.5).pattern(low=-1.3, high=0.7), 20)
     model = solver.FoldModel(net)
     model.set_controls([Curve(1, curvature_plus=0.25)])
-    m = settle(model)
+    m = settled(model)
     assert np.nanmedian(m.fold_angle) == pytest.approx(2 * np.degrees(np.arccos(1 / 1.5)), abs=2.0)
 
 
@@ -139,7 +132,7 @@ def test_torsion_twists_the_crease_to_its_side(exact: ModuleType, torsion: float
     net = solver.build_net(exact.arc(1.5).pattern(low=-1.3, high=0.7), 20)
     model = solver.FoldModel(net)
     model.set_controls([Curve(1, curvature_times=1.3, torsion_plus=torsion)])
-    m = settle(model)
+    m = settled(model)
     assert m.folded.all()
     found = measure_curve(crease_points(model)[::2])
     assert np.median(found.torsion) == pytest.approx(torsion, rel=0.25)
@@ -162,12 +155,32 @@ def test_progress_stops_on_the_way_and_speed_gets_there_sooner(exact: ModuleType
     assert iterations[2] < iterations[1]
 
 
+@pytest.mark.parametrize(("part", "speed"), [(1.0, 1.0), (1.0, 4.0), (0.4, 1.0)])
+def test_how_far_a_crease_has_gone_is_told(exact: ModuleType, part: float, speed: float) -> None:
+    model = solver.FoldModel(solver.build_net(exact.arc(1.5).pattern(low=-1.3, high=0.7), 12))
+    assert model.flow_progress == {}
+    model.set_controls([Curve(1, curvature_times=1.5, progress=part, speed=speed)])
+    assert model.flow_progress == {0: 0.0}
+    seen = [0.0]
+    while model.status is solver.Status.RUNNING:
+        model.advance(2)
+        seen.append(model.flow_progress[0])
+    assert seen == sorted(seen)
+    assert seen[-1] == pytest.approx(part, abs=1e-9)
+    # At the usual speed the first steps are small ones; faster they are longer.
+    assert 0.0 < seen[1] <= 0.1 * speed
+    again = model.flow_progress[0]
+    model.set_controls([])
+    assert model.flow_progress == {}
+    assert again == seen[-1]
+
+
 def test_progress_goes_back_the_way_it_came(exact: ModuleType) -> None:
     net = solver.build_net(exact.arc(1.5).pattern(low=-1.3, high=0.7), 12)
     model = solver.FoldModel(net)
     model.set_controls([Curve(1, curvature_times=1.5)])
-    settle(model)
+    settled(model)
     model.set_controls([Curve(1, curvature_times=1.5, progress=0.4)])
-    m = settle(model)
+    m = settled(model)
     assert np.nanmedian(m.fold_angle) == pytest.approx(0.4 * 2 * np.degrees(np.arccos(1 / 1.5)), abs=5)
     assert m.folded.all()

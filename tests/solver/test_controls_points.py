@@ -6,20 +6,13 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from settling import settled
 
 import solver
 from solver.controls.angle import Angle
 from solver.controls.glue import Glue
 from solver.controls.keep import Keep
 from solver.controls.pair import Pair
-
-
-def settle(model: solver.FoldModel, most: int = 1500) -> solver.Measurement:
-    done = 0
-    while model.status is solver.Status.RUNNING and done < most:
-        done += model.advance(20).iterations
-    assert model.status is solver.Status.SETTLED
-    return solver.measure(model.net, model.positions)
 
 
 def place(model: solver.FoldModel, at: tuple[float, float]) -> np.ndarray:
@@ -33,7 +26,7 @@ def place(model: solver.FoldModel, at: tuple[float, float]) -> np.ndarray:
 def test_two_points_of_a_flat_sheet_meet(drawings: ModuleType) -> None:
     model = solver.FoldModel(solver.build_net(drawings.one_arc(), 12))
     model.set_controls([Pair((0, 0), (1, 0))])
-    m = settle(model)
+    m = settled(model)
     assert np.linalg.norm(place(model, (0, 0)) - place(model, (1, 0))) < 0.02
     assert m.folded.all()
     assert m.stretch.mean() < 0.003
@@ -44,7 +37,7 @@ def test_two_points_of_a_flat_sheet_meet(drawings: ModuleType) -> None:
 def test_a_pair_comes_to_its_distance(drawings: ModuleType, distance: float) -> None:
     model = solver.FoldModel(solver.build_net(drawings.one_arc(), 12))
     model.set_controls([Pair((0, 0), (1, 0), distance=distance)])
-    m = settle(model)
+    m = settled(model)
     assert np.linalg.norm(place(model, (0, 0)) - place(model, (1, 0))) == pytest.approx(distance, abs=0.01)
     assert m.folded.all()
 
@@ -55,11 +48,11 @@ def test_a_pair_shares_one_coordinate_and_no_other(drawings: ModuleType, axis: i
     model = solver.FoldModel(solver.build_net(drawings.one_arc(), 12))
     held = {(0.0, 0.0): (0.0, 0.0, 0.0), (1.0, 0.0): (0.9, 0.0, 0.05), (0.0, 1.0): (0.02, 0.95, 0.2)}
     model.set_handles([solver.Handle(at=at, target=target, strength=20.0) for at, target in held.items()])
-    settle(model)
+    settled(model)
     free = place(model, (1, 1)) - place(model, (0.5, 1))
     axes = tuple(k == axis for k in range(3))
     model.set_controls([Pair((1, 1), (0.5, 1), axes=axes, strength=5.0)])
-    settle(model)
+    settled(model)
     gap = place(model, (1, 1)) - place(model, (0.5, 1))
     if axis > 0:  # along x they cannot come together without leaving the handles
         assert abs(free[axis]) > 0.008
@@ -76,7 +69,7 @@ def test_one_pair_alone_folds_an_annulus(drawings: ModuleType) -> None:
     )
     model = solver.FoldModel(solver.build_net(pattern, 20))
     model.set_controls([Pair((-1, 0), (1, 0), distance=1.5)])
-    m = settle(model)
+    m = settled(model)
     assert np.linalg.norm(place(model, (-1, 0)) - place(model, (1, 0))) == pytest.approx(1.5, abs=0.03)
     assert m.folded.all()
     assert len(set(model.found_assignments)) == 2
@@ -103,7 +96,7 @@ def corners_of_lowest(drawings: ModuleType) -> np.ndarray:
 def test_a_kept_patch_is_flat_while_the_others_fold(drawings: ModuleType) -> None:
     model = solver.FoldModel(solver.build_net(drawings.two_arcs(), 12))
     model.set_fold_angle(50)
-    settle(model)
+    settled(model)
     places = corners_of_lowest(drawings)
 
     def unevenness() -> float:
@@ -112,7 +105,7 @@ def test_a_kept_patch_is_flat_while_the_others_fold(drawings: ModuleType) -> Non
 
     bent = unevenness()
     model.set_controls([Keep((0.5, 0.05))])
-    m = settle(model)
+    m = settled(model)
     assert bent > 0.03
     assert unevenness() < 0.01
     # A flat patch lets a curved crease bend no more: that one opens, the other stays.
@@ -126,7 +119,7 @@ def test_a_rigid_patch_keeps_its_shape_when_the_drive_opens(drawings: ModuleType
     for kept in (False, True):
         model = solver.FoldModel(solver.build_net(drawings.two_arcs(), 12))
         model.set_fold_angle(50)
-        settle(model)
+        settled(model)
 
         def distances(model: solver.FoldModel = model) -> np.ndarray:
             points = np.array([place(model, tuple(p)) for p in places])
@@ -135,7 +128,7 @@ def test_a_rigid_patch_keeps_its_shape_when_the_drive_opens(drawings: ModuleType
         before = distances()
         model.set_controls([Keep((0.5, 0.05), shape="rigid")] if kept else [])
         model.set_fold_angle(20)
-        settle(model)
+        settled(model)
         change[kept] = np.abs(distances() - before).max()
     assert change[True] < 0.4 * change[False]
 
@@ -159,7 +152,7 @@ def seam_gap(model: solver.FoldModel) -> float:
 def test_a_strip_is_glued_to_a_ring_from_flat_and_folds_at_every_crease(drawings: ModuleType) -> None:
     model = solver.FoldModel(solver.build_net(strip(drawings), 32))
     model.set_controls([Glue(LEFT, RIGHT)])
-    m = settle(model)
+    m = settled(model)
     assert seam_gap(model) < 0.003
     assert m.folded.all()
     assert m.stretch.mean() < 0.002
@@ -171,7 +164,7 @@ def test_bending_across_the_seam_takes_its_kink_away(drawings: ModuleType) -> No
     for bending in (True, False):
         model = solver.FoldModel(solver.build_net(strip(drawings), 32))
         model.set_controls([Glue(LEFT, RIGHT, bending=bending)])
-        settle(model)
+        settled(model)
         assert seam_gap(model) < 0.003
         before, after = (
             place(model, (1, 0.12)) - place(model, (0.97, 0.12)),
@@ -189,7 +182,7 @@ def test_a_seam_may_be_glued_the_other_way_round(drawings: ModuleType) -> None:
     model = solver.FoldModel(solver.build_net(pattern, 50))
     model.set_handles([solver.Handle(at=(0.5, 0.04), target=(0.5, 0.04, 0.0))])
     model.set_controls([Glue(((0, 0), (0, 0.08)), ((1, 0.08), (1, 0)))])
-    settle(model)
+    settled(model)
     gap = [np.linalg.norm(place(model, (0, y)) - place(model, (1, 0.08 - y))) for y in (0, 0.04, 0.08)]
     assert max(gap) < 0.02
 
@@ -197,6 +190,6 @@ def test_a_seam_may_be_glued_the_other_way_round(drawings: ModuleType) -> None:
 def test_angles_and_a_seam_work_together(drawings: ModuleType) -> None:
     model = solver.FoldModel(solver.build_net(strip(drawings), 32))
     model.set_controls([Glue(LEFT, RIGHT), Angle(80.0, crease=3)])
-    m = settle(model)
+    m = settled(model)
     assert seam_gap(model) < 0.01
     assert np.nanmedian(m.fold_angle[m.crease == 2]) == pytest.approx(80, abs=3)

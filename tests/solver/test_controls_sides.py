@@ -7,17 +7,10 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from settling import settled
 
 import solver
 from solver.controls.side import Side
-
-
-def settle(model: solver.FoldModel, most: int = 1200) -> solver.Measurement:
-    done = 0
-    while model.status is solver.Status.RUNNING and done < most:
-        done += model.advance(20).iterations
-    assert model.status is solver.Status.SETTLED
-    return solver.measure(model.net, model.positions)
 
 
 def lifted(pattern: solver.CreasePattern) -> list[solver.Handle]:
@@ -45,7 +38,7 @@ def test_any_two_sides_hold_while_handles_pull_one_way(drawings: ModuleType, nam
     model = solver.FoldModel(solver.build_net(pattern, 12))
     model.set_handles(lifted(pattern))
     model.set_assignments(letters)
-    m = settle(model)
+    m = settled(model)
     assert "".join(model.found_assignments) == letters
     assert m.folded.all()
     assert not model.findings
@@ -58,8 +51,8 @@ def test_a_side_holds_where_a_start_would_not(drawings: ModuleType) -> None:
     for model in (free, bound):
         model.set_handles(lifted(pattern))
     bound.set_assignments(["V"])
-    settle(free)
-    settle(bound)
+    settled(free)
+    settled(bound)
     assert free.found_assignments == ("M",)
     assert bound.found_assignments == ("V",)
 
@@ -68,12 +61,12 @@ def test_a_side_holds_where_a_start_would_not(drawings: ModuleType) -> None:
 def test_a_folded_crease_flips_and_folds_as_deep_on_the_other_side(drawings: ModuleType, degrees: float) -> None:
     model = solver.FoldModel(solver.build_net(drawings.one_arc(), 12))
     model.set_fold_angle(degrees)
-    before = settle(model)
+    before = settled(model)
     (letter,) = model.found_assignments
     model.set_assignments(["M" if letter == "V" else "V"])
     # On its way nothing holds it where it was.
     assert model.advance(5).objective["fold angle"] == 0.0
-    after = settle(model)
+    after = settled(model)
     assert model.advance(0).objective["fold angle"] > 0.0
     assert model.found_assignments != (letter,)
     assert np.nanmedian(after.fold_angle) == pytest.approx(np.nanmedian(before.fold_angle), rel=0.03)
@@ -85,13 +78,13 @@ def test_what_was_found_can_be_locked(drawings: ModuleType) -> None:
     pattern = drawings.two_arcs()
     model = solver.FoldModel(solver.build_net(pattern, 12))
     model.set_fold_angle(40)
-    settle(model)
+    settled(model)
     found = model.found_assignments
     assert set(found) <= {"M", "V"}
     model.set_assignments(found)
     model.set_fold_angle(None)
     model.set_handles(lifted(pattern))
-    settle(model)
+    settled(model)
     assert model.found_assignments == found
 
 
@@ -102,11 +95,11 @@ def test_sides_that_handles_contradict_are_named_and_nothing_jams(exact: ModuleT
     model = solver.FoldModel(net)
     places = [(x, y) for x in np.linspace(-1, 1, 21) for y in np.linspace(-1, 1, 21)]
     model.set_handles([solver.Handle(at=p, target=tuple(state.at(p)), strength=20.0) for p in places])
-    settle(model)
+    settled(model)
     first, second = model.found_assignments
     assert first != second
     model.set_assignments([first, first])
-    m = settle(model)
+    m = settled(model)
     assert model.found_assignments == (first, second)
     (finding,) = model.findings
     assert finding.sentence.startswith("crease 2 was to be a")

@@ -7,6 +7,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 import shapely
+from settling import settle
 
 import solver
 
@@ -23,15 +24,6 @@ STRETCH = {11: (1.8e-3, 6.4e-3), 21: (4.6e-4, 1.6e-3), 41: (1.2e-4, 4.0e-4)}
 def angle_errors(net: solver.PiecewiseDog, m: solver.Measurement, state: object) -> np.ndarray:
     known = np.isfinite(m.fold_angle)
     return np.abs(m.fold_angle - state.fold_angle(m.crease_position[:, 0]))[known]  # type: ignore[attr-defined]
-
-
-def settle(model: solver.FoldModel, most: int = 800) -> solver.SqpReport:
-    done = 0
-    while True:
-        report = model.advance(20)
-        done += report.iterations
-        if model.status is not solver.Status.RUNNING or done >= most:
-            return report
 
 
 # --- the closed forms themselves: what the tests rest on ------------------------------------------------

@@ -11,19 +11,11 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from settling import settle
 
 import solver
 
 ROOT = Path(__file__).resolve().parents[2]
-
-
-def settle(model: solver.FoldModel, most: int = 1000) -> solver.SqpReport:
-    done = 0
-    while True:
-        report = model.advance(20)
-        done += report.iterations
-        if model.status is not solver.Status.RUNNING or done >= most:
-            return report
 
 
 def folded(
