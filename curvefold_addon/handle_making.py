@@ -7,6 +7,7 @@ from mathutils import Vector
 
 from . import live
 from .bridge import hooks
+from .bridge.mesh import longer_side
 from .bridge.surface_points import SurfacePoint
 
 #: Size of a handle's empty, relative to the longer side of the paper.
@@ -48,7 +49,7 @@ def new_empty(paper: bpy.types.Object, place: Sequence[float], name: str) -> bpy
     empty = bpy.data.objects.new(name, None)
     empty[OURS] = True
     empty.empty_display_type = "SPHERE"
-    empty.empty_display_size = EMPTY_SIZE * longer_side(paper)
+    empty.empty_display_size = EMPTY_SIZE * longer_side(paper.data)
     empty.show_in_front = True
     empty.color = EMPTY_COLOR
     for collection in paper.users_collection:
@@ -58,12 +59,6 @@ def new_empty(paper: bpy.types.Object, place: Sequence[float], name: str) -> bpy
     # Until now Blender does not know where it is.
     bpy.context.view_layer.update()
     return empty
-
-
-def longer_side(paper: bpy.types.Object) -> float:
-    """Of the flat sheet, in the paper's units."""
-    flat = paper.data.uv_layers["flat"].uv
-    return max(max(item.vector[axis] for item in flat) - min(item.vector[axis] for item in flat) for axis in (0, 1))
 
 
 def remove_handle(paper: bpy.types.Object, index: int) -> None:

@@ -4,7 +4,7 @@ import bpy
 from mathutils import Vector
 
 #: A thing fills this much of the view's shorter side when it is turned to ...
-FILLS = 0.6
+FILLS = 0.64
 #: ... and below this, or above the whole side, it is.
 SMALL = 0.3
 #: Width of the view's camera, mm, with the zoom that Blender gives it.

@@ -9,8 +9,8 @@ import bpy
 
 SHEET, CREASE = "SHEET", "CREASE"
 
-#: Radius of a crease's line, relative to the sheet's longer side: that of a felt pen on a letter.
-LINE = 3e-3
+#: Radius of a crease's line, relative to the sheet's longer side: that of a thick felt pen on a letter.
+LINE = 4e-3
 
 Color = tuple[float, float, float, float]
 
@@ -18,7 +18,7 @@ Color = tuple[float, float, float, float]
 LOOKS: dict[str, tuple[str, Color]] = {
     "M": ("Curvefold Mountain", (1.0, 0.08, 0.05, 1.0)),
     "V": ("Curvefold Valley", (0.06, 0.30, 1.0, 1.0)),
-    "U": ("Curvefold Free Crease", (0.60, 0.22, 1.0, 1.0)),
+    "U": ("Curvefold Free Crease", (0.72, 0.36, 1.0, 1.0)),
     "F": ("Curvefold Flat Crease", (0.45, 0.45, 0.45, 1.0)),
 }
 

@@ -104,6 +104,13 @@ def has_geometry_of(mesh: Any, surface: RenderMap) -> bool:
     return FLAT_UV in mesh.uv_layers and all(name in mesh.attributes for name in (PATCH, CREASE, CREASE_EDGE))
 
 
+def longer_side(mesh: Any) -> float:
+    """Of the flat sheet that a mesh shows, in the paper's units."""
+    flat = np.empty(2 * len(mesh.loops), dtype=np.float32)
+    mesh.uv_layers[FLAT_UV].uv.foreach_get("vector", flat)
+    return float(np.ptp(flat.reshape(-1, 2), axis=0).max())
+
+
 def shows(mesh: Any, positions: NDArray[np.float64]) -> bool:
     """Whether the vertices of a mesh are at (R,3) positions."""
     shown = np.empty(3 * len(mesh.vertices), dtype=np.float32)

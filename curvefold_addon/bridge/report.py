@@ -97,7 +97,7 @@ def _standing(
     if found.refused:
         return "trouble", found.refused[0]
     if found.failed:
-        return "trouble", "the numbers ran away; the last good shape is kept"
+        return "trouble", "the fold failed; the last good shape is kept"
     asked = None if inputs is None else inputs.angle
     if folding and found.rest is None:
         return "folding", "folding…" if asked is None else f"folding: {median:.0f}° of {asked:.0f}°"

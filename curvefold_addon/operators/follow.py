@@ -3,6 +3,7 @@
 It must not run all the time: a running modal operator keeps Blender from saving automatically.
 """
 
+import gc
 import time
 from typing import ClassVar
 
@@ -12,6 +13,12 @@ from .. import live, preferences
 
 #: Between two ticks, seconds: the view is drawn in between.
 INTERVAL = 1 / 60
+
+#: A view that takes longer than this from one tick to the next, seconds, is drawn so slowly that waiting would only
+#: make it slower: the solver has had that time already.
+SLOW = 0.05
+#: Then a tick waits for this part of its budget.
+SLOW_PART = 0.25
 
 #: Seconds in which a timer of a hundredth comes for certain, once Blender looks at events again.
 SWEEP = 0.05
@@ -38,17 +45,22 @@ class Follow(bpy.types.Operator):
             return {"CANCELLED"}
         _timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
         context.window_manager.modal_handler_add(self)
+        # A collection of all that Blender and its extensions hold takes up to 0.2 s, and building a net brings
+        # one about. While papers move, only what is made meanwhile is looked through.
+        gc.freeze()
         _running = True
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         # Timers of other operators arrive too: the clock says when a tick is due.
-        if event.type != "TIMER" or time.monotonic() - self._ended < 0.5 * INTERVAL:
+        pause = time.monotonic() - self._ended
+        if event.type != "TIMER" or pause < 0.5 * INTERVAL:
             return {"PASS_THROUGH"}
         if bpy.app.is_job_running("RENDER"):
             return {"PASS_THROUGH"}
         transforming = is_transforming(context.window_manager)
-        more = live.tick(preferences.budget_seconds(), transforming)
+        budget = preferences.budget_seconds()
+        more = live.tick(budget if pause < SLOW else SLOW_PART * budget, transforming)
         self._ended = time.monotonic()
         if more or transforming:
             return {"PASS_THROUGH"}
@@ -62,6 +74,8 @@ class Follow(bpy.types.Operator):
 def stop(manager: bpy.types.WindowManager) -> None:
     """Leaves nothing of the running operator behind."""
     global _running, _timer
+    if _running:
+        gc.unfreeze()
     _running = False
     if _timer is not None:
         manager.event_timer_remove(_timer)

@@ -33,7 +33,7 @@ class ImportDrawing(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         if not self.filepath:
-            self.report({"ERROR"}, "no drawing was chosen")
+            self.report({"ERROR"}, "No drawing was chosen")
             return {"CANCELLED"}
         try:
             pattern = solver.read_pattern(bpy.path.abspath(self.filepath))

@@ -1,5 +1,6 @@
 """The operator that ticks: it begins when there is something to do, ends when there is not, and cleans up."""
 
+import gc
 from contextlib import nullcontext
 from types import SimpleNamespace
 
@@ -43,7 +44,7 @@ def running(follow, live, monkeypatch):
     monkeypatch.setattr(follow, "_running", False)
     monkeypatch.setattr(follow, "_timer", None)
     # Every event comes when a tick is due.
-    monkeypatch.setattr(follow.time, "monotonic", iter(range(1, 10_000)).__next__)
+    monkeypatch.setattr(follow.time, "monotonic", (0.02 * k for k in range(1, 10_000)).__next__)
     more = [True]
 
     def tick(budget, transforming):
@@ -57,7 +58,8 @@ def running(follow, live, monkeypatch):
         cancel=lambda: cls.cancel(operator, context),
         invoke=lambda: cls.invoke(operator, context, None),
     )
-    return send, manager, ticks, more
+    yield send, manager, ticks, more
+    gc.unfreeze()
 
 
 def test_ticks_while_there_is_more_and_ends_when_all_rest(running, follow):
@@ -69,6 +71,17 @@ def test_ticks_while_there_is_more_and_ends_when_all_rest(running, follow):
     more[0] = False
     assert send.event(TIMER) == {"FINISHED", "PASS_THROUGH"}
     assert (manager.timers, follow._running) == ([], False)
+
+
+def test_only_while_it_runs_the_collector_leaves_alone_what_was_there_before(running, follow):
+    send, _, _, more = running
+    assert gc.get_freeze_count() > 10_000, "all that Blender's Python holds"
+    more[0] = False
+    send.event(TIMER)
+    assert gc.get_freeze_count() == 0
+    gc.freeze()  # somebody else's, and not to be undone
+    follow.stop(Manager())
+    assert gc.get_freeze_count() > 0
 
 
 def test_lets_all_other_events_pass_unread(running):
@@ -91,10 +104,18 @@ def test_goes_on_while_the_hand_holds_something(running):
 def test_timers_of_others_make_no_extra_ticks(running, follow, monkeypatch):
     send, _, ticks, _ = running
     send.event(TIMER)
-    monkeypatch.setattr(follow.time, "monotonic", lambda: 2.0)  # the moment in which that tick has ended
+    monkeypatch.setattr(follow.time, "monotonic", lambda: 0.04)  # the moment in which that tick has ended
     for _ in range(5):
         assert send.event(TIMER) == {"PASS_THROUGH"}
     assert len(ticks) == 1
+
+
+def test_where_drawing_takes_long_it_waits_less_for_the_solver(running, follow, monkeypatch):
+    send, _, ticks, _ = running
+    send.event(TIMER)
+    monkeypatch.setattr(follow.time, "monotonic", (0.04 + 0.06 * k for k in range(1, 10)).__next__)
+    send.event(TIMER)
+    assert ticks == [(0.02, False), (0.005, False)]
 
 
 def test_waits_for_a_render(running, monkeypatch, follow):

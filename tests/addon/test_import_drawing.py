@@ -30,7 +30,7 @@ def test_a_bad_drawing_is_one_sentence(broken_drawing):
 
 
 def test_no_drawing():
-    with pytest.raises(RuntimeError, match="no drawing was chosen"):
+    with pytest.raises(RuntimeError, match="No drawing was chosen"):
         bpy.ops.curvefold.import_drawing()
 
 

@@ -29,12 +29,15 @@ class Screen:
         self.display = display
         #: Waits until what the mouse and the keyboard have done so far has been understood.
         self.understood: Callable[[], None] = lambda: None
+        #: What a hand has done, in order: "point", "press", "draw" (the mouse, a button held or not) and "key".
+        self.actions: list[str] = []
         self._environment = os.environ | {"DISPLAY": display}
 
     def _xdotool(self, *arguments: object) -> None:
         subprocess.run(["xdotool", *map(str, arguments)], env=self._environment, check=True)
 
     def move(self, place: Place) -> None:
+        self.actions.append("point")
         self._xdotool("mousemove", round(place[0]), round(place[1]))
 
     def glide(self, start: Place, end: Place, seconds: float) -> None:
@@ -43,6 +46,7 @@ class Screen:
 
     def follow(self, path: Sequence[Place]) -> None:
         """From the first place on by steps, as a mouse reports them: Blender may put the pointer back meanwhile."""
+        self.actions.append("draw")
         due = time.monotonic()
         steps = np.diff(np.round(path), axis=0).astype(int).tolist()
         for right, down in steps:
@@ -51,6 +55,7 @@ class Screen:
             time.sleep(max(0.0, due - time.monotonic()))
 
     def press(self, button: int = 1) -> None:
+        self.actions.append("press")
         self._xdotool("mousedown", button)
 
     def release(self, button: int = 1) -> None:
@@ -76,6 +81,7 @@ class Screen:
     def key(self, *names: str) -> None:
         """Presses keys one after the other, by X's names: ``key("g")``, ``key("ctrl+z")``."""
         for name in names:
+            self.actions.append("key")
             self._xdotool("key", "--clearmodifiers", name)
             self.understood()
 

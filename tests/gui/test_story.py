@@ -12,8 +12,9 @@ import pytest
 
 from tests.gui import person
 from tests.gui.following import following
+from tests.gui.keystrokes import estimate
 from tests.gui.person import beside, grab, let_go, of_role, paper, settled
-from tests.gui.program import Program
+from tests.gui.program import ROOT, Program
 from tests.gui.screen import along
 
 Picture = Callable[..., Path]
@@ -24,9 +25,16 @@ HAND = 3.0
 
 
 def paper_and_sidebar(blender: Program) -> tuple[int, int, int, int]:
-    """What a picture in the guide needs of the 3D view: the middle of it, and the tab beside."""
-    _, top, right, _ = blender.ask("regions")["AREA"]
-    return right - 790, top, right, top + 500
+    """What a picture in the guide needs of the 3D view: all of it but the lowest part."""
+    left, top, right, _ = blender.ask("regions")["AREA"]
+    return left, top, right, top + 500
+
+
+def two_minutes() -> str:
+    """The steps of the guide that the story follows."""
+    guide = (ROOT / "docs" / "user_guide.md").read_text(encoding="utf-8")
+    begin = guide.index("**1. ", guide.index("## Two minutes to a folded sheet"))
+    return guide[begin : guide.index("That is all", begin)]
 
 
 def sidebar(blender: Program) -> list[int]:
@@ -36,6 +44,7 @@ def sidebar(blender: Program) -> list[int]:
 def test_a_sheet_comes_from_the_add_menu(blender: Program, picture: Picture) -> None:
     screen = blender.screen
     blender.rest()
+    screen.actions.clear()
     screen.key("a", "Delete")  # the cube, the light and the camera of a new scene
     assert blender.facts()["objects"] == {}
     blender.click_on("Add")
@@ -120,6 +129,9 @@ def test_the_paper_follows_a_drag(blender: Program, picture: Picture) -> None:
     assert paper(during)["hash"] != paper(before)["hash"], "the paper waits for the end of the drag"
     picture("drag", paper_and_sidebar(blender))
     let_go(blender)
+    newcomer = estimate(blender.screen.actions, two_minutes())
+    print(f"\n  {newcomer}")
+    assert newcomer.seconds < 120.0, "the guide promises two minutes"
     found = following(blender.ask("recorded")["events"])
     print(f"\n  {paper(before)['vertices']} vertices: {found.frames:.1f} frames, {found.ticks:.1f} ticks a second")
     after = settled(blender)
