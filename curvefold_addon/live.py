@@ -179,6 +179,22 @@ def flatten(paper: bpy.types.Object) -> None:
     wake(paper.data)
 
 
+def fold_anew(paper: bpy.types.Object) -> bool:
+    """Folds a paper from flat in another way, towards what it is told now; whether it is told anything.
+
+    Raises CurvefoldError, StateError.
+    """
+    found = make_session(paper)
+    inputs = _inputs(paper, found)
+    if not inputs.pulls:
+        return False
+    found.fold_anew()
+    found.write(paper.data)
+    found.before = None
+    wake(paper.data)
+    return True
+
+
 def show_again(paper: bpy.types.Object) -> None:
     """The mesh shows what is kept of the paper, whatever it has shown in between."""
     found = make_session(paper)
@@ -191,13 +207,15 @@ def paper_of(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
 
 
 def active_paper(context: bpy.types.Context) -> bpy.types.Object | None:
-    """The paper that the user means: the active object, or the one that it pulls."""
+    """The paper that the user means: the active object, or the one that it pulls; where nothing is active, the only
+    one of the scene.
+    """
     active = context.active_object
+    watch = _watched()
     if active is None:
-        return None
+        return _paper(next(iter(watch.papers))) if len(watch.papers) == 1 else None
     if active.type == "MESH" and active.data.curvefold.is_paper:
         return active
-    watch = _watched()
     return next((_paper(uid) for uid in sorted(watch.movers.get(active.session_uid, ()))), None)
 
 

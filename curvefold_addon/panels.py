@@ -104,6 +104,8 @@ def _draw_standing(layout: bpy.types.UILayout, context: bpy.types.Context, paper
     row = layout.row(align=True)
     row.prop(settings, "live", toggle=True, icon="PLAY")
     row.operator("curvefold.flatten", text="Flatten", icon="MESH_PLANE")
+    if report is not None and report.state == "trouble":
+        layout.operator("curvefold.fold_anew", icon="FILE_REFRESH")
 
 
 class HandleList(bpy.types.UIList):

@@ -52,6 +52,11 @@ class Inputs:
         """Whether some control may bend a flat sheet."""
         return any(not isinstance(control, Amount | Keep) for control in self.controls)
 
+    @property
+    def pulls(self) -> bool:
+        """Whether anything may bend a flat sheet."""
+        return bool(self.angle or self.handles or self.asks)
+
     def numbers(self) -> NDArray[np.float64]:
         """(2 + C + 9H,) angle (NaN for None), C and the numbers of the controls and weights, then at, target, axes
         and strength of each handle.
@@ -108,7 +113,7 @@ def read(
         label = handle_label(settings, index)
         target = _target(entry, value, paper, scene, depsgraph)
         if target is None:
-            faults.append(f"{label} has lost its hook")
+            faults.append(f"{label} is pulled by nothing any more: choose an object for it, or remove it")
             continue
         at = (float(entry.at[0]), float(entry.at[1]))
         reason = why_not_at(at)

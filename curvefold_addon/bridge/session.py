@@ -207,6 +207,11 @@ class Session:
         """Puts the flat sheet in place of the shape."""
         self.move_to(flat_positions(self.net), None)
 
+    def fold_anew(self) -> None:
+        """From the flat sheet in another way than the paper went before (``FoldModel.fold_anew``)."""
+        self.lay_flat()
+        self._worker.fold_anew()
+
     def rest_if_flat(self, inputs: Inputs) -> None:
         """A flat paper that is asked for nothing but to be flat has nothing to do."""
         numbers = inputs.numbers()

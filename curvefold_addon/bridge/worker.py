@@ -82,6 +82,7 @@ class Worker:
         self._asked: Inputs | None = None
         self._job: Future[None] | None = None
         self._enough = Event()
+        self._anew = False
         self._iterations = 0
         self._measured_at = 0.0
         self.newest: Step | None = None
@@ -104,6 +105,10 @@ class Worker:
         unused = self._job is None and self._model is None
         worker._earlier = self._earlier if unused else self
         return worker
+
+    def fold_anew(self) -> None:
+        """Begins with another way from flat. Before the first iteration."""
+        self._anew = True
 
     def work(self, inputs: Inputs, deadline: float) -> None:
         """Lets the thread work on the newest inputs, and waits until the clock says ``deadline`` or it rests.
@@ -170,6 +175,9 @@ class Worker:
             model.set_fold_angle(inputs.angle)
         if told is None or told.controls != inputs.controls:
             self._refused = _set_controls(model, inputs)
+        if self._anew:
+            self._anew = False
+            model.fold_anew()
         begin = time.perf_counter()
         report = model.advance(iterations)
         now = time.perf_counter()

@@ -210,7 +210,7 @@ def test_free_bake_gives_the_live_paper_back(folding, scene, live):
     assert len(set(first)) == 6
 
 
-@pytest.mark.parametrize("operator", ["settle", "flatten"])
+@pytest.mark.parametrize("operator", ["settle", "flatten", "fold_anew"])
 def test_what_shape_keys_would_hide_is_not_done(folding, operator):
     mesh = folding.data
     bpy.ops.curvefold.bake()

@@ -195,7 +195,7 @@ def test_a_file_of_another_version_is_answered_and_left_alone(
     bpy.context.view_layer.update()
     tick_until_rest(live)
     bpy.context.view_layer.objects.active = bpy.data.objects[folded_paper]
-    for operator in ("settle", "flatten", "lock_sides", "pin", "bake"):
+    for operator in ("settle", "flatten", "fold_anew", "lock_sides", "pin", "bake"):
         mesh.curvefold.live = True
         with pytest.raises(RuntimeError, match=sentence):
             getattr(bpy.ops.curvefold, operator)()

@@ -482,7 +482,52 @@ def test_settle_waits_and_says_how_it_stands(paper, capfd):
     assert positions(paper.data)[:, 2].any()
 
 
-OPERATORS = ("place_handle", "add_handles", "pin", "remove_handle", "flatten", "settle", "bake", "free_bake")
+def test_folded_anew_a_paper_opens_first_and_then_follows_its_handles(extension, placing, folded_paper, live):
+    mesh = folded_paper.data
+    mesh.curvefold.fold = 0.0
+    empty = placing.place_along(bpy.context, folded_paper, Vector((0.0, 0.04, 1)), Vector((0, 0, -1)))
+    empty.location.z = 0.01
+    bpy.context.view_layer.update()
+    live.settle(mesh)
+    assert live.fold_anew(folded_paper)
+    assert not positions(mesh)[:, 2].any()
+    angles, found = [], live.session(mesh)
+    while live.tick(0.02):
+        angles.append(np.nanmedian(extension("solver").measure(found.net, found.positions).fold_angle))
+    assert max(angles) > 55
+    assert angles[-1] < 30, "it was opened wider than its handle asks"
+    assert tuple(found.place_of(tuple(handles(folded_paper)[0].at))) == pytest.approx(
+        tuple(empty.location), abs=1e-3
+    )
+
+
+def test_folding_anew_waits_without_a_window_and_can_be_undone(folded_paper, live):
+    name, before = folded_paper.name, positions(folded_paper.data)
+    bpy.ops.ed.undo_push(message="folded")
+    assert bpy.ops.curvefold.fold_anew("EXEC_DEFAULT", True) == {"FINISHED"}
+    assert live.report(folded_paper.data).state == "settled"
+    assert not np.array_equal(positions(folded_paper.data), before)
+    bpy.ops.ed.undo()
+    assert np.array_equal(positions(bpy.data.objects[name].data), before)
+
+
+def test_what_is_told_nothing_is_not_folded_anew(paper):
+    with pytest.raises(RuntimeError, match="Nothing pulls at this paper"):
+        bpy.ops.curvefold.fold_anew()
+    assert not positions(paper.data)[:, 2].any()
+
+
+OPERATORS = (
+    "place_handle",
+    "add_handles",
+    "pin",
+    "remove_handle",
+    "flatten",
+    "fold_anew",
+    "settle",
+    "bake",
+    "free_bake",
+)
 
 
 @pytest.mark.parametrize("name", OPERATORS)
@@ -490,7 +535,7 @@ def test_all_need_a_paper(name):
     assert not getattr(bpy.ops.curvefold, name).poll()
 
 
-@pytest.mark.parametrize("name", ["flatten", "settle"])
+@pytest.mark.parametrize("name", ["flatten", "fold_anew", "settle"])
 def test_a_spoilt_paper_is_one_sentence(extension, paper, name):
     extension("curvefold_addon.live").forget()
     paper.data["curvefold_format"] = 99
@@ -504,3 +549,16 @@ def test_a_handle_stands_for_its_paper(placing, paper, live):
     assert bpy.context.active_object == empty
     assert live.active_paper(bpy.context) == paper
     assert bpy.ops.curvefold.settle() == {"FINISHED"}
+
+
+def test_where_nothing_is_active_the_only_paper_is_meant(placing, paper, sheet, live):
+    empty = placing.place_along(bpy.context, paper, Vector((0, 0, 1)), Vector((0, 0, -1)))
+    bpy.data.objects.remove(empty)  # as Delete does: now nothing is active
+    assert bpy.context.active_object is None
+    assert live.active_paper(bpy.context) == paper
+    bpy.context.view_layer.objects.active = sheet
+    bpy.ops.object.select_all(action="DESELECT")
+    sheet.select_set(True)
+    assert bpy.ops.curvefold.make_paper(resolution=12) == {"FINISHED"}
+    bpy.context.view_layer.objects.active = None
+    assert live.active_paper(bpy.context) is None, "there are two"

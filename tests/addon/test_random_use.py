@@ -18,6 +18,7 @@ import addon_utils
 import bpy
 import numpy as np
 import pytest
+from mathutils import Vector
 
 STEPS = int(os.environ.get("CURVEFOLD_RANDOM_STEPS", "240"))
 SEED = int(os.environ.get("CURVEFOLD_RANDOM_SEED", "1"))
@@ -216,12 +217,140 @@ def hold(walk):
     call(operator)
 
 
-@step(2)
+@step(3)
 def join(walk):
     paper = walk.paper()
-    if paper is not None and len(paper.data.curvefold.joints) < 3 and len(paper.data.vertices):
+    if paper is None or len(paper.data.curvefold.joints) >= 3 or not len(paper.data.polygons):
+        return
+    what = walk.rng.randrange(4)
+    if what <= 1:
         select_vertices(walk, paper, 2)
         call(bpy.ops.curvefold.join_points, relation=walk.rng.choice(("MEET", "SHARE", "DISTANCE")))
+    elif what == 2:
+        select_vertices(walk, paper, 0)
+        bpy.ops.mesh.select_mode(type="FACE")
+        bpy.ops.object.mode_set(mode="OBJECT")
+        walk.rng.choice(paper.data.polygons).select = True
+        bpy.ops.object.mode_set(mode="EDIT")
+        call(bpy.ops.curvefold.keep_patch, shape=walk.rng.choice(("FLAT", "RIGID")))
+    else:
+        select_opposite_borders(paper)
+        call(bpy.ops.curvefold.glue_borders)
+
+
+def select_opposite_borders(paper) -> None:
+    """Edit Mode with the vertices at both ends of the sheet."""
+    across = paper.data.uv_layers.get("flat")
+    flat = (
+        {} if across is None else {loop.vertex_index: across.uv[loop.index].vector.x for loop in paper.data.loops}
+    )
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_mode(type="VERT")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for index, x in flat.items():
+        paper.data.vertices[index].select = min(x - min(flat.values()), max(flat.values()) - x) < 1e-6
+    bpy.ops.object.mode_set(mode="EDIT")
+
+
+@step(2)
+def change_joint(walk):
+    paper = walk.paper()
+    if paper is None or not len(paper.data.curvefold.joints):
+        return
+    joint = walk.rng.choice(paper.data.curvefold.joints)
+    what = walk.rng.randrange(8)
+    if what == 0:
+        joint.enabled = not joint.enabled
+    elif what == 1:
+        joint.relation = walk.rng.choice(("MEET", "SHARE", "DISTANCE"))
+    elif what == 2:
+        joint.distance = walk.rng.uniform(0.0, 0.15)
+    elif what == 3:
+        joint.axes = [walk.rng.random() < 0.5 for _ in range(3)]
+    elif what == 4:
+        joint.shape = walk.rng.choice(("FLAT", "RIGID"))
+    elif what == 5:
+        joint.bending, joint.reverse = walk.rng.random() < 0.5, walk.rng.random() < 0.5
+    elif what == 6:
+        joint.strength = walk.rng.uniform(0.01, 5.0)
+    else:
+        setattr(joint, walk.rng.choice(("first", "second")), [walk.rng.uniform(-0.07, 0.07) for _ in range(2)])
+
+
+@step(3)
+def ask_angles(walk):
+    """At vertices of creases; now and then at any."""
+    paper = walk.paper()
+    if paper is None or len(paper.data.curvefold.angles) >= 4 or not len(paper.data.vertices):
+        return
+    select_vertices(walk, paper, walk.rng.randrange(2))
+    bpy.ops.object.mode_set(mode="OBJECT")
+    marks = paper.data.attributes.get("crease")
+    creased = [] if marks is None else [e.vertices[0] for e in paper.data.edges if marks.data[e.index].value >= 0]
+    for index in walk.rng.sample(creased, min(len(creased), walk.rng.randint(1, 2))):
+        paper.data.vertices[index].select = True
+    bpy.ops.object.mode_set(mode="EDIT")
+    call(bpy.ops.curvefold.add_angles)
+
+
+@step(3)
+def change_angle(walk):
+    paper = walk.paper()
+    if paper is None or not len(paper.data.curvefold.angles):
+        return
+    angle = walk.rng.choice(paper.data.curvefold.angles)
+    what = walk.rng.randrange(5)
+    if what == 0:
+        angle.enabled = not angle.enabled
+    elif what == 1:
+        angle.signed = not angle.signed
+    elif what == 2:
+        angle.angle = walk.rng.uniform(-math.pi, math.pi)
+    elif what == 3:
+        angle.strength = walk.rng.uniform(0.01, 5.0)
+    else:
+        angle.at = [walk.rng.uniform(-0.07, 0.07) for _ in range(2)]
+
+
+@step(2)
+def pick(walk):
+    """A click on the paper, or beside it, as the operators that wait for one take it."""
+    paper = walk.paper()
+    if paper is None or not len(paper.data.vertices) or len(paper.data.curvefold.angles) >= 4:
+        return
+    normal = paper.matrix_world.to_3x3() @ Vector((0.0, 0.0, 1.0))
+    at = paper.matrix_world @ walk.rng.choice(paper.data.vertices).co
+    operator = SimpleNamespace()
+    try:
+        point = walk.addon.clicks.crease_along(paper, at + normal, -normal)
+        if point is not None:
+            walk.rng.choice((walk.addon.pick_crease.PickCrease, walk.addon.point_angles.PlaceAngle)).clicked(
+                operator, paper, point
+            )
+    except (walk.addon.solver.CurvefoldError, walk.addon.state.StateError):
+        pass  # as the operators do, which say it
+
+
+@step(3)
+def flow(walk):
+    paper = walk.paper()
+    if paper is None or not len(paper.data.curvefold.creases):
+        return
+    crease = walk.rng.choice(paper.data.curvefold.creases)
+    what = walk.rng.randrange(5)
+    if what == 0:
+        crease.flow = walk.rng.choice(("NONE", "SHAPE", "SHAPE", "OBJECT"))
+    elif what == 1:
+        crease.curvature_times, crease.torsion_plus = walk.rng.uniform(0.5, 2.0), walk.rng.uniform(-5.0, 5.0)
+    elif what == 2:
+        crease.progress = walk.rng.uniform(0.0, 100.0)
+    elif what == 3:
+        crease.flow_speed = walk.rng.choice((0.01, 0.3, 1.0, 5.0, 100.0))
+        crease.flow_strength = walk.rng.choice((0.01, 1.0, 100.0))
+    else:
+        # Any object can be named from a script.
+        crease.curve = walk.rng.choice((None, walk.some([*walk.objects("CREASE"), *walk.papers()])))
 
 
 @step(2)
@@ -266,7 +395,8 @@ def change_handle(walk):
 def remove(walk):
     paper = walk.paper()
     if paper is not None:
-        call(walk.rng.choice((bpy.ops.curvefold.remove_handle, bpy.ops.curvefold.remove_joint)))
+        operators = bpy.ops.curvefold
+        call(walk.rng.choice((operators.remove_handle, operators.remove_joint, operators.remove_angle)))
 
 
 @step(3)
@@ -298,6 +428,12 @@ def sides(walk):
 def flatten(walk):
     if walk.paper() is not None:
         call(bpy.ops.curvefold.flatten)
+
+
+@step(1)
+def fold_anew(walk):
+    if walk.paper() is not None:
+        call(bpy.ops.curvefold.fold_anew)
 
 
 @step(2)
@@ -654,7 +790,9 @@ def addon(extension, pytestconfig, monkeypatch):
     solver = extension("solver")
     package = solver.__package__.rpartition(".")[0]
     handlers = extension("curvefold_addon.handlers")
-    return SimpleNamespace(live=live, handlers=handlers, solver=solver, package=package, **bridge)
+    clicking = {"clicks": "click_on_crease", "pick_crease": "pick_crease", "point_angles": "point_angles"}
+    clicking = {key: extension(f"curvefold_addon.operators.{name}") for key, name in clicking.items()}
+    return SimpleNamespace(live=live, handlers=handlers, solver=solver, package=package, **bridge, **clicking)
 
 
 @pytest.mark.parametrize("seed", range(SEED, SEED + max(1, STEPS // LENGTH)))

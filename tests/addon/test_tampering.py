@@ -63,7 +63,7 @@ def test_lost_marks_are_said_and_come_back(folded_paper):
     assert "flat" in mesh.uv_layers
 
 
-@pytest.mark.parametrize("operator", ["settle", "flatten"])
+@pytest.mark.parametrize("operator", ["settle", "flatten", "fold_anew"])
 def test_in_edit_mode_it_is_refused_in_a_sentence(folded_paper, operator):
     mesh = folded_paper.data
     kept = bytes(mesh["curvefold_positions"])
