@@ -23,7 +23,7 @@ from PIL import Image, ImageDraw
 
 from benchmarks.gallery_figures import Figure, figures
 from benchmarks.samples import BACKGROUND, FINER, FRONT, INK
-from solver import CreasePattern
+from solver import CreasePattern, RulingKind, Rulings, fold, rulings
 from solver.arrays import FloatArray
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -34,6 +34,12 @@ PAGE, DATA, PICTURES = ROOT / "docs" / "gallery.md", ROOT / "docs" / "gallery.js
 BARS = {"stretch_mean": 0.003, "stretch_max": 0.01, "continuity_mean": 2e-4, "continuity_max": 3.5e-3}
 #: Size of a Cycles picture, its samples, and the width of the flat drawing beside it.
 WIDTH, HEIGHT, SAMPLES, FLAT_WIDTH = 480, 360, 16, 360
+#: Rulings that are parallel, meet in a point, or do neither.
+RULING = {
+    RulingKind.CYLINDRICAL: (120, 150, 190),
+    RulingKind.CONICAL: (190, 150, 60),
+    RulingKind.GENERAL: (130, 160, 120),
+}
 #: Part of its half that the flat drawing fills.
 _FILLED = 0.86
 INTRODUCTION = """# Gallery
@@ -167,7 +173,10 @@ def write(chosen: Sequence[Figure], rows: Sequence[dict[str, Any]]) -> None:
             rendered = WORK / figure.name / "folded.png"
             if rendered.exists():
                 PICTURES.mkdir(parents=True, exist_ok=True)
-                beside(flat_picture(figure.pattern), rendered).save(PICTURES / f"{figure.name}.png", optimize=True)
+                lines = ruled(figure) if figure.ruled else None
+                beside(flat_picture(figure.pattern, lines), rendered).save(
+                    PICTURES / f"{figure.name}.png", optimize=True
+                )
                 text.append(f"![{figure.words}](pictures/gallery/{figure.name}.png)\n")
             text.append(f"{figure.words[0].upper()}{figure.words[1:]}.\n")
         text.append(table(mine))
@@ -199,8 +208,14 @@ def _bound(row: dict[str, Any], name: str, held: bool) -> str:
     return f"**{value}**" if held and row[name] > BARS[name] else value
 
 
-def flat_picture(pattern: CreasePattern) -> Image.Image:
-    """The drawing, creases in their colours, on a half of its own."""
+def ruled(figure: Figure) -> Rulings:
+    """The rulings of a figure's fold."""
+    result = fold(figure.pattern, figure.description)
+    return rulings(result.net, result.positions)
+
+
+def flat_picture(pattern: CreasePattern, lines: Rulings | None = None) -> Image.Image:
+    """The drawing, creases in their colours, on a half of its own, with the rulings of a fold if there are any."""
     image = Image.new("RGB", (FLAT_WIDTH * FINER, HEIGHT * FINER), BACKGROUND)
     draw = ImageDraw.Draw(image)
     low, high = pattern.boundary.min(axis=0), pattern.boundary.max(axis=0)
@@ -215,6 +230,9 @@ def flat_picture(pattern: CreasePattern) -> Image.Image:
         outline = pixels(ring)
         draw.polygon(outline, fill=fill)
         draw.line([*outline, *outline[:2]], fill=(0, 0, 0), width=FINER, joint="curve")
+    if lines is not None:
+        for ends, kind in zip(lines.flat, lines.kind, strict=True):
+            draw.line(pixels(ends), fill=RULING[RulingKind(kind)], width=FINER)
     for crease in pattern.creases:
         points = np.vstack([crease.points, crease.points[:1]]) if crease.closed else crease.points
         draw.line(pixels(points), fill=INK[crease.assignment], width=2 * FINER, joint="curve")

@@ -31,7 +31,7 @@ class Figure:
     """One fold. figure: number in the paper; name: of the files; words: what is shown.
 
     fast: whether it belongs to the fast subset. bars: whether the paper's bounds are meant to hold: not for what
-    is shown to fail (no fold condition, all at once).
+    is shown to fail (no fold condition, all at once). ruled: whether the flat drawing shows the fold's rulings.
     """
 
     figure: str
@@ -41,6 +41,7 @@ class Figure:
     description: FoldDescription
     fast: bool = False
     bars: bool = True
+    ruled: bool = False
 
 
 def figures() -> tuple[Figure, ...]:
@@ -145,11 +146,14 @@ def _annuli() -> tuple[Figure, ...]:
 
 
 def _one_drawing_two_surfaces() -> tuple[Figure, ...]:
-    words = "one arc folded into two surfaces, by torsion to the {}"
+    words = (
+        "one arc folded into two surfaces, by torsion to the {}, and the fold's rulings on the flat sheet "
+        "(brown: cones, blue: cylinders, green: neither)"
+    )
     return tuple(
         Figure(
             "2", f"surface_{side}", words.format(side), _ONE,
-            _told(Curve(1, curvature_times=1.3, torsion_plus=torsion)), fast=side == "left",
+            _told(Curve(1, curvature_times=1.3, torsion_plus=torsion)), fast=side == "left", ruled=True,
         )
         for side, torsion in (("left", 1.2), ("right", -1.2))
     )  # fmt: skip
