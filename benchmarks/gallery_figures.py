@@ -137,7 +137,7 @@ def _annuli() -> tuple[Figure, ...]:
     words = "an annulus with {} concentric creases; one pair of opposite points is drawn together"
     pair = Pair((-1.0, 0.0), (1.0, 0.0), distance=1.25)
     return (
-        Figure("1", "annulus_two", words.format("two"), _annulus((0.6, 0.8), 0.4), _told(pair, resolution=76)),
+        Figure("1", "annulus_two", words.format("two"), _annulus((0.6, 0.8), 0.4), _told(pair, resolution=80)),
         Figure(
             "1", "annulus_four", words.format("four"), _annulus((0.52, 0.64, 0.76, 0.88), 0.4),
             _told(Pair((-1.0, 0.0), (1.0, 0.0), distance=1.65), resolution=56),
