@@ -205,9 +205,8 @@ def come_to_rest(model: FoldModel, description: FoldDescription, progress: Progr
     What the other way comes to is kept only if it is all that was asked.
     """
     rest = _rest(model, description, progress, 0)
-    if not (rest.status in _WORTH_ANOTHER_WAY and description.handles) or _too_far_apart(
-        description.handles, model.net
-    ):
+    may_help = rest.status in _WORTH_ANOTHER_WAY and description.weights.fold_condition > 0
+    if not (may_help and description.handles) or _too_far_apart(description.handles, model.net):
         return rest
     model.fold_anew()
     other = _rest(model, description, progress, rest.iterations)
