@@ -248,8 +248,9 @@ def select_opposite_borders(paper) -> None:
     bpy.ops.mesh.select_mode(type="VERT")
     bpy.ops.mesh.select_all(action="DESELECT")
     bpy.ops.object.mode_set(mode="OBJECT")
+    low, high = min(flat.values(), default=0.0), max(flat.values(), default=0.0)
     for index, x in flat.items():
-        paper.data.vertices[index].select = min(x - min(flat.values()), max(flat.values()) - x) < 1e-6
+        paper.data.vertices[index].select = min(x - low, high - x) < 1e-6
     bpy.ops.object.mode_set(mode="EDIT")
 
 
