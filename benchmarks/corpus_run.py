@@ -12,15 +12,17 @@ import numpy as np
 
 import solver
 from benchmarks.corpus_drags import FRAME_ITERATIONS, Drag, make_drag, protocol_drag
-from benchmarks.corpus_drawings import make_drawing
+from benchmarks.corpus_drawings import Drawing, make_drawing
 from solver.arrays import FloatArray
-from solver.fold import MAX_MEAN_STRETCH, come_to_rest, fold_angle_quantiles, judge
+from solver.fold import MAX_MEAN_STRETCH, Rest, come_to_rest, fold_angle_quantiles, judge
 from solver.folding import REACHED
 
 #: SQP iterations after which a run that has not settled ends.
 MOST_ITERATIONS = 1500
 #: The protocol: quads along the longer side, and frames at rest at the end.
 PROTOCOL_RESOLUTION, PROTOCOL_REST = 32, 6
+#: A drag that fails is tried with so many times the quads to a side, to tell a net that is too coarse for it.
+FINER = (1.5, 2.0, 3.0)
 #: A sheet that went back is flat within this part of its longer side.
 FLAT_AGAIN = 1e-3
 
@@ -37,8 +39,10 @@ class Job:
 class Run:
     """What one run gave. Lengths in mean grid edges, angles in degrees, fold_angle 10 %, median and 90 %.
 
-    ok: a feasible drag reached with every crease point folded and the paper whole; one there and back flat
-    again; one too far said to be out of reach. off_flat: how far from flat, part of the longer side, if back.
+    A drag there and back comes to rest there too, and that rest is what the figures are about; off_flat says how
+    far from flat it then was at the end, part of the longer side.
+    ok: a feasible drag reached with every crease point folded, the paper whole, and flat again if it went back;
+    one too far said to be out of reach. reason: of a feasible one that is not ok, from nets with more quads.
     """
 
     seed: int
@@ -61,6 +65,7 @@ class Run:
     off_flat: float | None = None
     certified: bool = False
     sentence: str = ""
+    reason: str = ""
     drawing: str | None = None
     ok: bool = False
 
@@ -74,12 +79,15 @@ def do(job: Job) -> Run:
             drawing = make_drawing(job.seed)
             run.family = drawing.family
             net = solver.build_net(drawing.pattern, drawing.resolution)
-            _drag(run, drawing.pattern, net, make_drag(job.seed, drawing, net))
+            drag = make_drag(job.seed, drawing, net)
+            _drag(run, net, drag)
+            if drag.feasible and not run.ok and run.status != "not flat again":
+                run.reason = _reason(drawing, drag)
         else:
             run.family = Path(job.drawing).stem
             pattern = solver.read_pattern(job.drawing)
             net = solver.build_net(pattern, PROTOCOL_RESOLUTION)
-            _drag(run, pattern, net, protocol_drag(pattern))
+            _drag(run, net, protocol_drag(pattern))
     except solver.CurvefoldError as error:
         run.status, run.sentence = "refused", str(error)
     except Exception as error:
@@ -91,29 +99,52 @@ def do(job: Job) -> Run:
     return run
 
 
-def _drag(run: Run, pattern: solver.CreasePattern, net: solver.PiecewiseDog, drag: Drag) -> None:
+def _drag(run: Run, net: solver.PiecewiseDog, drag: Drag) -> None:
     run.drag = f"{drag.kind}{' at once' if drag.frames == 1 else ''}"
     run.feasible = drag.feasible
     run.vertices = len(net.rest)
     model = solver.FoldModel(net)
-    way = [(k + 1) / drag.frames for k in range(drag.frames)]
-    if drag.back:
-        way += [*way[-2::-1], 0.0]
+    there = [(k + 1) / drag.frames for k in range(drag.frames)]
     if drag.kind == "protocol":
-        way += [1.0] * PROTOCOL_REST
+        there += [1.0] * PROTOCOL_REST
+    report = _follow(run, model, drag, there)
+    description = _description(drag, there[-1])
+    settles = drag.kind != "protocol"
+    rest = come_to_rest(model, description) if settles else judge(model, description, report, 0)
+    run.iterations += rest.iterations
+    _look(run, net, rest)
+    whole = run.reached and run.folded == 1.0 and run.stretch_mean < MAX_MEAN_STRETCH
+    if drag.kind == "protocol":
+        run.ok = run.reached and run.folded == 1.0
+        run.status = "folded" if run.ok else run.status
+        return
+    run.ok = whole and rest.status.ok if drag.feasible else rest.status is solver.Outcome.OUT_OF_REACH
+    if drag.back:
+        _follow(run, model, drag, [*there[-2::-1], 0.0])
+        back = come_to_rest(model, _description(drag, 0.0))
+        run.iterations += back.iterations
+        run.off_flat = _off_flat(net, back.positions)
+        if run.off_flat >= FLAT_AGAIN:
+            run.ok, run.status = False, "not flat again"
+            run.sentence = f"{run.off_flat:.1e} of the longer side off flat after there and back"
+
+
+def _follow(run: Run, model: solver.FoldModel, drag: Drag, way: list[float]) -> solver.SqpReport:
     for part in way:
         model.set_handles(drag.handles(part))
         report = model.advance(FRAME_ITERATIONS)
         run.iterations += report.iterations
-    description = solver.FoldDescription(
-        angle=None, handles=tuple(drag.handles(way[-1])), max_iterations=MOST_ITERATIONS
-    )
-    settles = drag.kind != "protocol"
-    rest = come_to_rest(model, description) if settles else judge(model, description, report, 0)
-    run.iterations += rest.iterations
-    report, x, m, outcome = rest.last, rest.positions, rest.measurement, rest.status
+    return report
+
+
+def _description(drag: Drag, part: float) -> solver.FoldDescription:
+    return solver.FoldDescription(angle=None, handles=tuple(drag.handles(part)), max_iterations=MOST_ITERATIONS)
+
+
+def _look(run: Run, net: solver.PiecewiseDog, rest: Rest) -> None:
+    report, m = rest.last, rest.measurement
     run.sentence = rest.detail
-    run.status = outcome.name.lower().replace("_", " ")
+    run.status = rest.status.name.lower().replace("_", " ")
     run.reached = bool(report.handle_error <= REACHED * net.frame.unit)
     run.folded = m.folded_part
     run.fold_angle = [round(angle, 3) for angle in fold_angle_quantiles(m)]
@@ -121,18 +152,19 @@ def _drag(run: Run, pattern: solver.CreasePattern, net: solver.PiecewiseDog, dra
     run.continuity = float(m.continuity.max(initial=0.0))
     run.dog_angle = float(m.dog_angle.max(initial=0.0))
     run.handle_error = float(report.handle_error / net.frame.unit)
-    run.certified = solver.verify(net, x).ok
-    whole = run.reached and run.folded == 1.0 and run.stretch_mean < MAX_MEAN_STRETCH
-    if drag.back:
-        run.off_flat = _off_flat(net, x)
-        run.ok = run.reached and run.off_flat < FLAT_AGAIN
-        if not run.ok:
-            run.sentence = f"{run.off_flat:.1e} of the longer side off flat after there and back"
-    elif drag.kind == "protocol":
-        run.ok = run.reached and run.folded == 1.0
-        run.status = "folded" if run.ok else run.status
-    else:
-        run.ok = whole and outcome.ok if drag.feasible else outcome is solver.Outcome.OUT_OF_REACH
+    run.certified = solver.verify(net, rest.positions).ok
+
+
+def _reason(drawing: Drawing, drag: Drag) -> str:
+    """Whether the same drag at once does what was asked in a net with more quads."""
+    description = _description(drag, 1.0)
+    for times in FINER:
+        net = solver.build_net(drawing.pattern, round(times * drawing.resolution))
+        model = solver.FoldModel(net)
+        model.set_handles(description.handles)
+        if come_to_rest(model, description).status.ok:
+            return f"the net is too coarse: {times:g} times as many quads to a side do it"
+    return f"{FINER[-1]:g} times as many quads to a side do not do it either"
 
 
 def _off_flat(net: solver.PiecewiseDog, x: FloatArray) -> float:

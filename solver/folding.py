@@ -456,6 +456,8 @@ class FoldModel:
             self._state = at_rest(softer)
             self._condition.hold(held)
             undone = [self._condition, self._paper]
+        elif not undone and self._handles.let_go(x):
+            undone = [self._handles]
         for pull in undone:
             self._replace(problem, pull)
         if undone:

@@ -12,6 +12,7 @@ from settling import settle
 import solver
 from benchmarks.corpus_drags import make_drag
 from benchmarks.corpus_drawings import make_drawing
+from solver.drive import MAX_MEAN_STRETCH
 
 #: ``solver.fold`` is the function; its module has the same name.
 fold_module = sys.modules["solver.fold"]
@@ -123,16 +124,33 @@ def test_folded_anew_a_paper_opens_along_its_creases_and_is_then_told_the_same(d
 
 
 def test_what_is_stuck_on_the_way_of_its_handles_gets_there_in_another(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Corpus seed 738: two arcs, handles that lift a corner at once."""
-    drawing = make_drawing(738)
-    drag = make_drag(738, drawing, solver.build_net(drawing.pattern, drawing.resolution))
-    told = solver.FoldDescription(drawing.resolution, angle=None, handles=tuple(drag.handles(1.0)))
+    """Corpus seed 568 with twice its quads: a loop, lifted at two points of its border at once."""
+    drawing = make_drawing(568)
+    drag = make_drag(568, drawing, solver.build_net(drawing.pattern, drawing.resolution))
+    told = solver.FoldDescription(2 * drawing.resolution, angle=None, handles=tuple(drag.handles(1.0)))
     result = solver.fold(drawing.pattern, told)
     assert result.status is solver.Outcome.FOLDED
     monkeypatch.setattr(fold_module, "_WORTH_ANOTHER_WAY", ())
     stuck = solver.fold(drawing.pattern, told)
     assert stuck.status is solver.Outcome.OUT_OF_REACH
     assert stuck.iterations < result.iterations
+
+
+@pytest.mark.parametrize("too_far", [0.1, 0.5, 3.0])
+def test_no_handle_stretches_the_paper(drawings: ModuleType, too_far: float) -> None:
+    """Two corners pulled apart beyond the paper between them: it stays as long as it is, and folded."""
+    pattern = drawings.one_arc()
+    low, high = pattern.boundary.min(axis=0), pattern.boundary.max(axis=0)
+    length = float(np.hypot(*(high - low)))
+    far = high + too_far * (high - low)
+    handles = tuple(solver.Handle(tuple(at), (*to, 0.0)) for at, to in zip((low, high), (low, far), strict=True))
+    result = solver.fold(pattern, solver.FoldDescription(12, angle=None, handles=handles))
+    assert result.status is solver.Outcome.OUT_OF_REACH
+    assert float(result.measurement.stretch.mean()) <= MAX_MEAN_STRETCH
+    ends = [weights @ result.positions[vertices] for vertices, weights in map(result.net.locate, (low, high))]
+    apart = float(np.linalg.norm(ends[0] - ends[1]))
+    # Not slack either: as far apart as the paper lets them be, but for the few edges right at the handles.
+    assert 0.97 * length < apart < length + 0.5 * result.net.frame.unit
 
 
 def test_another_way_that_does_not_arrive_leaves_the_first_shape(
