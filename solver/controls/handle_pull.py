@@ -26,8 +26,8 @@ _STIFFER, _STIFFENINGS = 4.0, 3
 #: Handles farther than this from their targets at rest pull harder, net units.
 _CLOSE = 0.05
 #: Handles that would count as missed pull a little harder even where the paper is stretched, up to this mean, and
-#: oftener: the paper holds harder meanwhile.
-_MISSED, _STIFFER_IF_MISSED, _NEARLY_STRETCHED, _STIFFENINGS_IF_MISSED = 0.25, 1.6, 0.0028, 6
+#: oftener: the paper holds harder meanwhile. No harder than would bring them to the second distance.
+_MISSED, _NEARER, _STIFFER_IF_MISSED, _NEARLY_STRETCHED, _STIFFENINGS_IF_MISSED = 0.25, 0.22, 1.6, 0.0028, 6
 #: Handles that are near enough let go a little of a paper that they stretch too far: so much, while nearer than
 #: this, net units, and from a mean stretch that no other remedy would lower.
 _SOFTER, _ROOM, _FAR_STRETCHED = 1.25, 0.28, 0.005
@@ -125,11 +125,11 @@ class HandlePull(Pull):
         are near and it is stretched too far."""
         if not len(self.handles) or self._times >= _STIFFENINGS_IF_MISSED or self._lettings:
             return False
-        gap, mean = self.gaps(x).max(), mean_stretch(self._net, x)
+        gap, mean = float(self.gaps(x).max()), mean_stretch(self._net, x)
         if gap > _CLOSE and mean <= 0.5 * MEAN_BUDGET and self._times < _STIFFENINGS:
             self._harder *= _STIFFER
         elif gap > _MISSED and mean <= _NEARLY_STRETCHED:
-            self._harder *= _STIFFER_IF_MISSED
+            self._harder *= min(gap / _NEARER, _STIFFER_IF_MISSED)
         elif gap < _ROOM and MAX_MEAN_STRETCH < mean <= _FAR_STRETCHED:
             self._harder /= _SOFTER
         else:

@@ -18,10 +18,12 @@ from ..objectives.continuity import continuity, mean_gap
 from ..objectives.isometry import isometry
 from .pull import Pull, Term
 
-#: An edge stretched by more than this at rest weighs more: the paper's 0.01 (section 6.1) with room to spare.
-ALLOWED_STRETCH = 0.007
-#: So many times more, at most so often: after that the drawing itself is in the way (a crossing, a cusp).
-_HEAVIER, _MOST_TIMES = 3.0, 4
+#: An edge stretched by more than this at rest weighs more: the paper's 0.004 (section 6.1) with room to spare.
+#: Where all of the paper is taut no edge can be that calm, and so many times the mean is allowed.
+ALLOWED_STRETCH, _TAUT = 0.0035, 2.0
+#: Its weight is multiplied by this and by how many times too long it is, up to the second, at most so often: after
+#: that the drawing itself is in the way (a crossing, a cusp).
+_HEAVIER, _HEAVIEST, _MOST_TIMES = 2.0, 9.0, 6
 #: Stitches hold harder when they gape more than this in the mean at rest, net units: the paper's 2e-4 with room to
 #: spare. Not beyond the second bound: so coarse a net needs its gaps, and its angles suffered without them.
 ALLOWED_GAP, _COARSE_GAP = 1.4e-4, 4e-4
@@ -29,8 +31,9 @@ ALLOWED_GAP, _COARSE_GAP = 1.4e-4, 4e-4
 _TIGHTER, _TIGHTENINGS = 2.5, 2
 #: With more than this part of the stretch budget in the mean nothing can be shared out any more.
 _FULL = 0.95
-#: Polishing may stretch an edge to this without being taken back for it, and is taken back at most so often.
-_POLISHED_STRETCH, _MOST_RETURNS = 0.01, 2
+#: Polishing may stretch an edge to this, or to so many times the mean, without being taken back for it, and is
+#: taken back at most so often.
+_POLISHED_STRETCH, _POLISHED_TAUT, _MOST_RETURNS = 0.005, 5.0, 2
 #: Then it weighs so many times more: another way back costs twenty iterations.
 _HEAVIER_POLISHED = 9.0
 
@@ -61,11 +64,13 @@ class PaperPull(Pull):
         at_limit = _FULL * MEAN_BUDGET < stretch.mean() <= MAX_MEAN_STRETCH
         if self._times >= _MOST_TIMES or at_limit:
             return False
-        stretched = stretch > ALLOWED_STRETCH
+        taut = _TAUT * float(stretch.mean()) if stretch.mean() <= MAX_MEAN_STRETCH else 0.0
+        excess = stretch / max(ALLOWED_STRETCH, taut)
+        stretched = excess > 1.0
         gaping = self._tightened < _TIGHTENINGS and ALLOWED_GAP < mean_gap(self._net, x) < _COARSE_GAP
         if not (stretched.any() or gaping):
             return False
-        self._heavier = np.where(stretched, _HEAVIER, 1.0) * self._heavier
+        self._heavier = np.where(stretched, np.minimum(_HEAVIER * excess, _HEAVIEST), 1.0) * self._heavier
         self._tightened += gaping
         self._times += 1
         return True
@@ -73,7 +78,7 @@ class PaperPull(Pull):
     def undone(self, x: FloatArray) -> bool:
         """Whether polishing to x has stretched edges too far, which then weigh more."""
         stretch = edge_stretch(self._net, x)
-        stretched = stretch > _POLISHED_STRETCH
+        stretched = stretch > max(_POLISHED_STRETCH, _POLISHED_TAUT * float(stretch.mean()))
         if not stretched.any() or self._returns >= _MOST_RETURNS or stretch.mean() > _FULL * MEAN_BUDGET:
             return False
         self._heavier = np.where(stretched, _HEAVIER_POLISHED, 1.0) * self._heavier

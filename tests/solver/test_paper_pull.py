@@ -20,10 +20,12 @@ def peaks(name: str) -> tuple[float, float]:
     return float(np.abs(m.stretch).max()), float(m.continuity.mean())
 
 
-@pytest.mark.parametrize("name", ["lens_with", "vertex_valley"])
-def test_peaks_of_stretch_and_gaps_are_shared_out(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+@pytest.mark.parametrize(("name", "bound"), [("lens_with", 0.004), ("vertex_valley", 0.006)])
+def test_peaks_of_stretch_and_gaps_are_shared_out(
+    monkeypatch: pytest.MonkeyPatch, name: str, bound: float
+) -> None:
     stretch, gap = peaks(name)
-    assert stretch < 0.01
+    assert stretch < bound
     assert gap < 2e-4
     monkeypatch.setattr(paper_pull, "_MOST_TIMES", 0)
     monkeypatch.setattr(paper_pull, "_MOST_RETURNS", 0)
@@ -60,7 +62,7 @@ def test_only_edges_that_gave_way_weigh_more_and_a_new_task_begins_with_the_usua
 
 
 def test_a_paper_at_its_limit_or_at_ease_is_left_alone(drawings: ModuleType) -> None:
-    net, x = pulled(drawings, 0.006)
+    net, x = pulled(drawings, 0.003)
     pull = PaperPull(net, 20000.0, 1e4)
     assert not pull.settle(x), "no edge is stretched too far"
     assert not pull.settle(1.0025 * x), "all of it is at its limit: others have to give way"
