@@ -26,6 +26,7 @@ _NAMES = (
     "../drawings/a.svg",
     "../../../../etc/passwd", "/etc/passwd", "/dev/zero", "/dev/tty.svg", "/", "", "#", "# a.svg", "a.svg\0", "\0",
     "a.svg/", "a.svg/b.svg", "nothing.svg", "pipe.svg", "folder.svg", "loop.svg", "~/a.svg", "-x.svg", "a\tb.svg",
+    "summary.csv.svg", "contact_sheet.png.svg", "Contact_Sheet-2.PNG.svg",
     "file:///etc/passwd", "con.svg", "b.svg ", "\ufeffa.svg", "a\u2028b.svg", "\x0b.svg",
 )  # fmt: skip
 _OPTIONS = (
@@ -52,6 +53,8 @@ def made_batch(rng: Random) -> bytes:
     lines = [rng.choice(_NAMES) for _ in range(rng.randrange(6))]
     if rng.random() < 0.5:
         lines.append("a.svg")
+    if rng.random() < 0.02:
+        lines *= rng.choice((10, 60))  # more than one contact sheet holds
     text = rng.choice(("\n", "\n", "\r\n", "\r")).join(lines).encode()
     if rng.random() < 0.3:
         text = spoilt(rng, text)
@@ -79,7 +82,7 @@ def _use(told: dict[str, Any], folder: Path, cli: ModuleType, batch: ModuleType)
     _clear(place)
     drawings = place / "drawings"
     drawings.mkdir(parents=True)
-    for name in ("a.svg", "b.svg", "A.SVG", "c d.svg", "...svg"):
+    for name in ("a.svg", "b.svg", "A.SVG", "c d.svg", "...svg", "summary.csv.svg", "contact_sheet.png.svg"):
         (drawings / name).write_text(f"<svg>{name}</svg>", encoding="utf-8")
     Path(os.fsdecode(bytes(drawings) + b"/\xff.svg")).write_bytes(b"")
     (drawings / "folder.svg").mkdir()

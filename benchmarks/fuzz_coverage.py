@@ -24,7 +24,7 @@ from benchmarks.fuzz_run import OUT
 
 ROOT = Path(__file__).resolve().parents[1]
 #: Names of doors, as in benchmarks.fuzz_inputs: not imported here, atheris has to see it first.
-DOORS = ("svg", "handles", "description")
+DOORS = ("svg", "fold", "handles", "description")
 #: Inputs that the breeding begins with, for each door.
 SEEDS = 80
 #: The longest input, bytes: the samples are shorter, and what is longer is slow and tells nothing more.

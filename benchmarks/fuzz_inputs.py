@@ -13,6 +13,7 @@ import numpy as np
 
 import solver
 from benchmarks.fuzz_run import Door
+from solver.files.fold_format import fold_text
 from solver.pattern.reading import READERS
 
 FOLDER = Path(__file__).resolve().parents[1] / "sample_patterns"
@@ -153,6 +154,114 @@ def spoilt(rng: Random, data: bytes) -> bytes:
     return bytes(array)
 
 
+def _svg(rng: Random) -> bytes:
+    if rng.random() < 0.5:
+        return made_svg(rng)
+    return spoilt(rng, rng.choice(sorted(FOLDER.glob("*.svg"))).read_bytes())
+
+
+@cache
+def _written(name: str) -> str:
+    """The FOLD file of a sample, as it is written of a folded one; folded by hand, which is quicker."""
+    rng = Random(name)
+    pattern = solver.read_pattern(FOLDER / f"{name}.svg")
+    surface = solver.build_net(pattern, 2 * RESOLUTION).render_map
+    height = rng.choice([0.0, 0.3]) * np.hypot(*surface.uv.T)
+    angles = [rng.choice([-1, 1, 1, 1]) * rng.uniform(0, 90) for _ in surface.crease_edges]
+    return fold_text(
+        np.column_stack([surface.uv, height]), surface.uv, surface.faces(), surface.crease_edges,
+        surface.crease_edge_crease, angles, "mm", pattern.name,
+    )  # fmt: skip
+
+
+def true_fold(rng: Random) -> dict[str, Any]:
+    """A FOLD file that is a drawing: ours, or a grid of squares with creases, as other programs may write it."""
+    if rng.random() < 0.4:
+        names = sorted(path.stem for path in FOLDER.glob("*.svg"))
+        return dict(json.loads(_written(rng.choice(names))))
+    columns, rows = rng.randrange(2, 7), rng.randrange(2, 7)
+    bend = rng.choice([0.0, 0.0, 0.2])
+    points = [[x + bend * (y % 2), y + bend * rng.random()] for y in range(rows) for x in range(columns)]
+    edges, letters = [], []
+    for k in range(columns * rows):
+        x, y = k % columns, k // columns
+        for other, inside, rim in ((k + 1, x + 1 < columns, y in (0, rows - 1)),
+                                   (k + columns, y + 1 < rows, x in (0, columns - 1))):  # fmt: skip
+            if inside:
+                edges.append([k, other])
+                letters.append("B" if rim else rng.choice("MVMVUFCJ" if rng.random() < 0.2 else "MV"))
+    faces = [[k, k + 1, k + columns + 1, k + columns] for k in range(columns * (rows - 1)) if (k + 1) % columns]
+    frame = {
+        "vertices_coords": points,
+        "edges_vertices": edges,
+        "edges_assignment": letters,
+        "faces_vertices": faces,
+    }
+    for key in ("edges_vertices", "edges_assignment", "faces_vertices"):
+        if rng.random() < 0.15:
+            del frame[key]
+    kind = rng.randrange(4)
+    if kind == 0:
+        frame["vertices_coords"] = [rng.choice([[x, 0, y], [x, y, 2], [x, y]]) for x, y in points]
+    if kind == 1:
+        frame["edges_foldAngle"] = [rng.choice([0, 0, None, 90, -90]) for _ in edges]
+    if kind == 2:
+        frame["edges_curvefold:crease"] = [rng.choice([None, 0, 1, 2]) for _ in edges]
+    if rng.random() < 0.3:
+        frame = {
+            **frame,
+            "frame_classes": [rng.choice(["foldedForm", "creasePattern", "graph"])],
+            "file_frames": [
+                {
+                    "frame_parent": rng.choice([0, 0, 1, 2]),
+                    "frame_inherit": True,
+                    "frame_classes": ["creasePattern"],
+                },
+                {"vertices_coords": points, "frame_parent": rng.choice([0, 1]), "frame_inherit": True},
+            ],
+        }
+    return frame
+
+
+def _tampered(rng: Random, data: dict[str, Any]) -> dict[str, Any]:
+    """A FOLD file with its geometry spoilt and its types left as they are."""
+    data = {key: list(value) if isinstance(value, list) else value for key, value in data.items()}
+    points, edges = data.get("vertices_coords"), data.get("edges_vertices")
+    for _ in range(rng.randrange(1, 8)):
+        kind = rng.randrange(7)
+        if kind == 0 and points:
+            points[rng.randrange(len(points))] = list(rng.choice(points))
+        elif kind == 1 and points:
+            at = rng.randrange(len(points))
+            points[at] = [v + rng.choice([1e-12, 1e-7, 1e-3, 0.3, 50.0]) * rng.uniform(-1, 1) for v in points[at]]
+        elif kind == 2 and edges and points:
+            edges[rng.randrange(len(edges))] = [rng.randrange(len(points)), rng.randrange(len(points))]
+        elif kind == 3 and edges:
+            edges.pop(rng.randrange(len(edges)))
+        elif kind == 4 and data.get("edges_assignment"):
+            marks = data["edges_assignment"]
+            marks[rng.randrange(len(marks))] = rng.choice(["B", "C", "M", "V", "U", "F", "m", "x", "", None])
+        elif kind == 5 and edges and points:
+            edges.append([rng.randrange(len(points)), rng.randrange(len(points))])
+        elif kind == 6 and points and rng.random() < 0.2:
+            factor = rng.choice([1e-300, 1e-9, 1e9, 1e12, -1.0])
+            points[:] = [[factor * v for v in point] for point in points]
+    return data
+
+
+def made_fold(rng: Random) -> bytes:
+    """A FOLD file, changed here and there, with its bytes spoilt or not."""
+    data: Any = true_fold(rng)
+    kind = rng.randrange(4)
+    if kind < 2:
+        data = _tampered(rng, data)
+    if kind > 0:
+        for _ in range(rng.randrange(1, 4)):
+            data = changed_json(rng, data)
+    text = json.dumps(data).encode()
+    return spoilt(rng, text) if rng.random() < 0.1 else text
+
+
 #: One control of every kind, and more, for TRIED_ON.
 CONTROLS: list[dict[str, Any]] = [
     {"kind": "amount", "crease": 1, "part": 0.5},
@@ -225,20 +334,6 @@ def made_description(rng: Random) -> bytes:
 # --- what is done with it -------------------------------------------------------------------------------
 
 
-def _sample(rng: Random, suffix: str) -> bytes:
-    files = sorted(FOLDER.glob(f"*{suffix}"))
-    return rng.choice(files).read_bytes() if files else b"{}"
-
-
-def _drawing(suffix: str) -> Callable[[Random], bytes]:
-    def make(rng: Random) -> bytes:
-        if suffix == ".svg" and rng.random() < 0.5:
-            return made_svg(rng)
-        return spoilt(rng, _sample(rng, suffix))
-
-    return make
-
-
 def _read_drawing(suffix: str) -> Callable[[bytes, Path], None]:
     def use(data: bytes, folder: Path) -> None:
         path = folder / f"drawing{suffix}"
@@ -289,8 +384,10 @@ def _door(name: str, make: Callable[[Random], bytes], use: Callable[[bytes, Path
     return Door(make, use, (solver.CurvefoldError,), frozenset({name}))
 
 
+#: Input for every reader of drawings.
+MAKERS = {".svg": _svg, ".fold": made_fold}
 DOORS = {
-    **{suffix[1:]: _door("drawing", _drawing(suffix), _read_drawing(suffix)) for suffix in READERS},
+    **{suffix[1:]: _door("drawing", MAKERS[suffix], _read_drawing(suffix)) for suffix in READERS},
     "handles": _door("handles", made_handles, _read_handles),
     "description": _door("description", made_description, _read_description),
 }

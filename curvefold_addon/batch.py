@@ -6,6 +6,7 @@ import hashlib
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -18,10 +19,11 @@ from typing import Any
 
 import bpy
 
+from ..solver.files.ruling_files import RULING_FILES
 from .bridge import contact_sheet
 from .whole_files import whole_file, write_text
 
-DRAWING_SUFFIXES = (".svg",)
+DRAWING_SUFFIXES = (".svg", ".fold")
 
 REPORT = "report.json"
 RESULTS = ("folded.obj", "folded.fold", REPORT)
@@ -34,6 +36,8 @@ STAMP_FORMAT = 1
 
 SUMMARY = "summary.csv"
 CONTACT_SHEET = "contact_sheet.png"
+#: What no folder of results may be called.
+OWN_FILES = re.compile(r"summary\.csv|contact_sheet(-\d+)?\.png")
 
 #: Without --render, a small quick picture for the contact sheet.
 THUMBNAIL_OPTIONS = ("--size", "320x240", "--samples", "12")
@@ -63,6 +67,12 @@ class Task:
     folder: Path
     picture: str
     options: tuple[str, ...]
+
+    @property
+    def results(self) -> tuple[str, ...]:
+        """The files that a fold of it leaves."""
+        more = RULING_FILES if "--rulings" in self.options else ()
+        return (*RESULTS, *more, self.picture)
 
     def stamp(self) -> dict[str, Any]:
         """What the results are made from."""
@@ -113,11 +123,28 @@ def run(source: Path, out: Path, *, jobs: int, render: bool, options: list[str])
             raise
     ordered = [outcomes[task] for task in tasks]
     write_text(out / SUMMARY, summary(ordered))
-    with whole_file(out / CONTACT_SHEET) as partial:
-        contact_sheet.save(partial, [_tile(outcome) for outcome in ordered])
+    pictures = _save_contact_sheets(out, [_tile(outcome) for outcome in ordered])
     bad = [outcome for outcome in ordered if outcome.exit_code != 0]
-    print(f"{len(ordered) - len(bad)} of {len(ordered)} drawings folded; {out / SUMMARY}, {out / CONTACT_SHEET}")
+    print(f"{len(ordered) - len(bad)} of {len(ordered)} drawings folded; {out / SUMMARY}, {pictures}")
     return 1 if bad else 0
+
+
+def _save_contact_sheets(out: Path, tiles: list[contact_sheet.Tile]) -> str:
+    """Saves as many sheets as the tiles fill, and removes those that an earlier run had more of. Says where."""
+    sheets = contact_sheet.sheets(tiles)
+    for number, some in enumerate(sheets, 1):
+        with whole_file(_contact_sheet(out, number)) as partial:
+            contact_sheet.save(partial, some)
+    number = len(sheets) + 1
+    while (old := _contact_sheet(out, number)).is_file():
+        old.unlink()
+        number += 1
+    return " to ".join(str(_contact_sheet(out, number)) for number in sorted({1, len(sheets)}))
+
+
+def _contact_sheet(out: Path, number: int) -> Path:
+    path = out / CONTACT_SHEET
+    return path if number == 1 else path.with_stem(f"{path.stem}-{number}")
 
 
 def find_drawings(source: Path) -> list[Path]:
@@ -155,7 +182,7 @@ def is_finished(task: Task) -> Outcome | None:
         stamp = json.loads((task.folder / STAMP).read_text(encoding="utf-8"))
         dict(_flat(json.loads((task.folder / REPORT).read_text(encoding="utf-8"))))
         same = stamp["made_from"] == task.stamp() and stamp["report_sha256"] == _sha256(task.folder / REPORT)
-        if not same or not all((task.folder / name).is_file() for name in (*RESULTS, task.picture)):
+        if not same or not all((task.folder / name).is_file() for name in task.results):
             return None
         code, sentence, seconds = stamp["exit_code"], stamp["sentence"], stamp["seconds"]
         if code not in FOLDED_CODES or not isinstance(sentence, str):
@@ -209,9 +236,11 @@ class _Crew:
 
     def _fold(self, task: Task) -> Outcome:
         start = time.monotonic()
+        if os.path.realpath(task.drawing.parent) == os.path.realpath(task.folder):
+            return Outcome(task, 2, f"{task.drawing}: it lies where its results would be written", 0.0)
         task.folder.mkdir(parents=True, exist_ok=True)
         # Whatever was here is from another drawing or other options.
-        for name in (STAMP, *RESULTS, PICTURE, THUMBNAIL):
+        for name in (STAMP, *RESULTS, *RULING_FILES, PICTURE, THUMBNAIL):
             (task.folder / name).unlink(missing_ok=True)
         made_from = task.stamp()
         picture = str(task.folder / task.picture)
@@ -221,7 +250,7 @@ class _Crew:
         with log.open("wb") as stream:
             code = self._wait(command, stream)
         seconds = time.monotonic() - start
-        if code in FOLDED_CODES and not all((task.folder / name).is_file() for name in (*RESULTS, task.picture)):
+        if code in FOLDED_CODES and not all((task.folder / name).is_file() for name in task.results):
             code = CRASHED  # Python itself ends with 1 on an error that nobody expected
         if code not in FOLDED_CODES:
             return Outcome(task, code, _last_words(log, code), seconds)
@@ -273,7 +302,7 @@ def _tasks(drawings: list[Path], out: Path, render: bool, options: list[str]) ->
         stem = drawing.stem if drawing.stem.strip(".") else "drawing"
         name, number = stem, 1
         # Case does not tell folders apart everywhere.
-        while name.lower() in used:
+        while name.lower() in used or OWN_FILES.fullmatch(name.lower()):
             number += 1
             name = f"{stem}-{number}"
         used.add(name.lower())

@@ -1,4 +1,4 @@
-"""An SVG file dropped into a 3D viewport."""
+"""An SVG or FOLD file dropped into a 3D viewport."""
 
 import bpy
 
@@ -11,7 +11,7 @@ class CURVEFOLD_FH_drawing(bpy.types.FileHandler):  # noqa: N801  (Blender wants
     bl_idname = "CURVEFOLD_FH_drawing"
     bl_label = "Crease Pattern"
     bl_import_operator = ImportDrawing.bl_idname
-    bl_file_extensions = ".svg"
+    bl_file_extensions = ".svg;.fold"
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:

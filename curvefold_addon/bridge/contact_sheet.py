@@ -1,8 +1,9 @@
-"""Many pictures on one sheet, each with its name below."""
+"""Many pictures on a sheet, each with its name below."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,12 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .lettering import lettering
+from .png import write_png
 
 TILE_WIDTH = 320
 TILE_HEIGHT = 240
 LABEL_HEIGHT = 26
 GAP = 10
+ROW_HEIGHT = GAP + TILE_HEIGHT + LABEL_HEIGHT
 LETTER_SCALE = 2
+#: Ten rows of ten: 3,310 pixels wide.
+TILES_ON_A_SHEET = 100
 
 PAPER = 0.96
 INK = 0.15
@@ -26,6 +31,7 @@ BLANK = 0.82
 NOTE_INK = (0.70, 0.10, 0.06)
 
 Pixels = NDArray[np.float32]
+Bytes = NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -37,42 +43,46 @@ class Tile:
     picture: Path | None
 
 
+def sheets(tiles: Sequence[Tile]) -> list[Sequence[Tile]]:
+    """The tiles of each sheet: what is smaller than a tile, or more on one picture, nobody can look at."""
+    return [tiles[k : k + TILES_ON_A_SHEET] for k in range(0, len(tiles), TILES_ON_A_SHEET)]
+
+
 def save(path: Path, tiles: Sequence[Tile]) -> None:
-    """Saves the sheet as a PNG file."""
-    sheet = compose(tiles)
-    height, width = sheet.shape[:2]
-    image = bpy.data.images.new("Curvefold contact sheet", width, height)
-    try:
-        rgba = np.ones((height, width, 4), dtype=np.float32)
-        # Blender's first row is the lowest.
-        rgba[:, :, :3] = sheet[::-1]
-        image.pixels.foreach_set(rgba.ravel())
-        image.filepath_raw = str(path)
-        image.file_format = "PNG"
-        image.save()
-    finally:
-        bpy.data.images.remove(image)
+    """Saves one sheet as a PNG file. A row of tiles is in memory at a time, and one picture."""
+    columns = max(1, math.isqrt(len(tiles) - 1) + 1)
+    rows = [tiles[k : k + columns] for k in range(0, len(tiles), columns)]
+    width = columns * (TILE_WIDTH + GAP) + GAP
+    height = len(rows) * ROW_HEIGHT + GAP
+    write_png(path, width, height, _bands(rows, width))
 
 
-def compose(tiles: Sequence[Tile]) -> Pixels:
-    """(height, width, 3) display colours, top row first."""
-    columns = max(1, int(np.ceil(np.sqrt(len(tiles)))))
-    rows = max(1, -(-len(tiles) // columns))
-    step_x, step_y = TILE_WIDTH + GAP, TILE_HEIGHT + LABEL_HEIGHT + GAP
-    sheet = np.full((rows * step_y + GAP, columns * step_x + GAP, 3), PAPER, dtype=np.float32)
+def _bands(rows: Sequence[Sequence[Tile]], width: int) -> Iterator[Bytes]:
+    for tiles in rows:
+        yield _band(tiles, width)
+    yield np.full((GAP, width, 3), _byte(PAPER), dtype=np.uint8)
+
+
+def _band(tiles: Sequence[Tile], width: int) -> Bytes:
+    """A row of tiles, (ROW_HEIGHT, width, 3) display colours, the uppermost row of pixels first."""
+    band = np.full((ROW_HEIGHT, width, 3), _byte(PAPER), dtype=np.uint8)
     for k, tile in enumerate(tiles):
-        y, x = GAP + (k // columns) * step_y, GAP + (k % columns) * step_x
-        sheet[y : y + TILE_HEIGHT, x : x + TILE_WIDTH] = _fitted(tile.picture)
-        below = sheet[y + TILE_HEIGHT + 6 : y + TILE_HEIGHT + LABEL_HEIGHT, x : x + TILE_WIDTH]
+        y, x = GAP, GAP + k * (TILE_WIDTH + GAP)
+        band[y : y + TILE_HEIGHT, x : x + TILE_WIDTH] = _byte(_fitted(tile.picture))
+        below = band[y + TILE_HEIGHT + 6 : y + TILE_HEIGHT + LABEL_HEIGHT, x : x + TILE_WIDTH]
         _print(below, tile.label, (INK, INK, INK))
         if tile.note:
             _print(below[:, _text_width(tile.label) + 10 :], tile.note, NOTE_INK)
-    return sheet
+    return band
 
 
-def _print(target: Pixels, text: str, ink: tuple[float, float, float]) -> None:
+def _byte(colours: Pixels | float | tuple[float, ...]) -> Bytes:
+    return (np.asarray(colours) * 255 + 0.5).clip(0, 255).astype(np.uint8)
+
+
+def _print(target: Bytes, text: str, ink: tuple[float, float, float]) -> None:
     letters = lettering(text, LETTER_SCALE, target.shape[1])
-    target[: letters.shape[0], : letters.shape[1]][letters] = ink
+    target[: letters.shape[0], : letters.shape[1]][letters] = _byte(ink)
 
 
 def _text_width(text: str) -> int:

@@ -12,14 +12,14 @@ from ..drawing_context import in_object_mode, select_only
 
 
 class ImportDrawing(bpy.types.Operator):
-    """Add the crease pattern in an SVG drawing as a sheet with creases"""
+    """Add the crease pattern in an SVG or FOLD file as a sheet with creases"""
 
     bl_idname = "curvefold.import_drawing"
     bl_label = "Import Crease Pattern"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
     filepath: StringProperty(subtype="FILE_PATH", options={"SKIP_SAVE"})
-    filter_glob: StringProperty(default="*.svg", options={"HIDDEN"})
+    filter_glob: StringProperty(default="*.svg;*.fold", options={"HIDDEN"})
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -56,7 +56,7 @@ def add_at_cursor(context: bpy.types.Context, pattern: solver.CreasePattern) -> 
 
 
 def _menu_entry(self: bpy.types.Menu, context: bpy.types.Context) -> None:
-    self.layout.operator(ImportDrawing.bl_idname, text="Crease Pattern (.svg)")
+    self.layout.operator(ImportDrawing.bl_idname, text="Crease Pattern (.svg, .fold)")
 
 
 def register() -> None:

@@ -11,12 +11,12 @@ from shapely import LineString, Polygon
 from ..arrays import FloatArray, IntArray
 from ..description import RESOLUTIONS
 from ..errors import NetError, PatternError
-from ..pattern.arrangement import Arrangement, arrange, sheet_polygon
+from ..pattern.arrangement import CROSSING, Arrangement, arrange, sheet_polygon
 from ..pattern.crease_pattern import Crease, CreasePattern
 from ..pattern.curves import sample_crease
 from .crease_points import find_crease_points
 from .frame import NetFrame, border_direction
-from .grid import OrthogonalGrid, place_grid, snap_vertices
+from .grid import OrthogonalGrid, crossings_held, place_grid, snap_vertices
 from .net_points import NodeCopies, node_copies
 from .overlay import ON_LINE, Overlay, overlay
 from .piecewise_dog import PiecewiseDog, Stitches
@@ -54,6 +54,7 @@ def build_net(pattern: CreasePattern, resolution: int = 32) -> PiecewiseDog:
     sheet_polygon(pattern.boundary, pattern.holes)  # in drawing units, so that errors name the user's place
     frame = _frame(pattern, int(resolution))
     arrangement = _arrange(pattern, frame)
+    _check_crossings(arrangement, int(resolution))
     grid = place_grid(arrangement)
     arrangement = snap_vertices(arrangement, grid)
     over = overlay(arrangement, grid)
@@ -150,6 +151,18 @@ def _crossings(lines: list[FloatArray]) -> int:
     return len(shapely.STRtree(sample).query(sample, predicate="crosses")[0]) // 2 * step**2
 
 
+def _check_crossings(arrangement: Arrangement, resolution: int) -> None:
+    """Raises NetError where creases cross more often than grid lines can."""
+    count, held = arrangement.kinds.count(CROSSING), crossings_held(arrangement.sheet)
+    if count > held:
+        needed = int(np.ceil(resolution * np.sqrt(count / held)))
+        raise NetError(
+            f"the creases cross {count:,} times, and {resolution} quads along the longer side leave room for "
+            f"{held:,} crossings at most: about {needed} quads are needed",
+            element="creases",
+        )
+
+
 def _assemble(
     pattern: CreasePattern,
     frame: NetFrame,
@@ -232,12 +245,14 @@ def _stitches(over: Overlay, copies: NodeCopies, arrangement: Arrangement) -> St
 
 def _patch_polygons(arrangement: Arrangement, over: Overlay, frame: NetFrame) -> tuple[Polygon, ...]:
     """One polygon a patch, drawing units: the union of its faces (a free crease end leaves no trace)."""
-    loops = np.split(over.loop_nodes, over.loop_start[1:-1])
-    polygons = np.array([Polygon(over.points[loop]) for loop in loops])
+    face = np.repeat(np.arange(len(over.patch)), np.diff(over.loop_start))
+    polygons = shapely.polygons(shapely.linearrings(over.points[over.loop_nodes], indices=face))
+    order = np.argsort(over.patch, kind="stable")
+    ends = np.cumsum(np.bincount(over.patch))
     result = []
-    for patch in range(int(over.patch.max()) + 1):
-        union = shapely.coverage_union_all(polygons[over.patch == patch])
+    for faces in np.split(polygons[order], ends[:-1]):
+        union = shapely.coverage_union_all(faces)
         if union.geom_type != "Polygon":
-            union = shapely.union_all(polygons[over.patch == patch], grid_size=1e-7)
+            union = shapely.union_all(faces, grid_size=1e-7)
         result.append(shapely.transform(union, frame.to_drawing))
     return tuple(result)

@@ -6,10 +6,11 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 import shapely
-from shapely import LineString
+from numpy.typing import NDArray
 
 from ..arrays import BoolArray, FloatArray, IntArray, frozen_array
 from ..pattern.arrangement import Arrangement
+from ..pattern.places import line_strings, places_along
 from .grid import OrthogonalGrid
 from .net_points import weights_at
 from .overlay import Overlay
@@ -62,49 +63,81 @@ class CreasePoints:
     fold_neighbours: IntArray
 
 
+#: A point in one patch: the vertices of a quad, counting ones first, and their weights; none without a quad.
+_Copy = tuple[IntArray, FloatArray] | None
+
+#: (a, b, t) of a point on a grid edge directed along +x or +y, or of a vertex and one of its neighbours.
+_Pair = tuple[int, int, float] | None
+
+
 @dataclass
 class _Row:
-    """One crease point while it is being gathered."""
+    """One crease point while it is being gathered: as seen through the faces on its left and right."""
 
     node: int
     along: float
     end: bool
-    left: tuple[IntArray, FloatArray] | None
-    right: tuple[IntArray, FloatArray] | None
+    faces: tuple[int, int]
+    left: _Copy = None
+    right: _Copy = None
+    left_pair: _Pair = None
+    right_pair: _Pair = None
 
 
 def find_crease_points(
     arrangement: Arrangement, over: Overlay, topology: Topology, grid: OrthogonalGrid
 ) -> CreasePoints:
     """Walk every chain of the arrangement through the overlay. All in cell lengths."""
+    chains = arrangement.chains
+    lines = [chain.points for chain in chains]
+    whole = line_strings(lines)
+    lengths = shapely.length(whole)
+    closed = np.array([chain.closed for chain in chains], dtype=bool)
+    walks = _walks(over, lines, lengths, closed)
+    rows = [row for _, walk in walks for row in walk]
+    _see(over, topology, grid, rows)
+    which = np.array([chain for chain, walk in walks for _ in walk], dtype=np.int64)
+    tangents = _tangents(
+        whole[which], lengths[which], closed[which], np.array([row.along for row in rows], dtype=float)
+    )
     builder = _Builder(over, topology, grid)
-    for index, chain in enumerate(arrangement.chains):
-        rows, length = _walk(over, topology, grid, index, chain.points, chain.closed)
-        builder.add_chain(index, chain.crease, chain.points, chain.closed, rows, length)
+    done = 0
+    for chain, walk in walks:
+        mine = tangents[done : done + len(walk)]
+        builder.add_chain(chain, chains[chain].crease, chains[chain].closed, walk, mine, float(lengths[chain]))
+        done += len(walk)
     return builder.finish()
 
 
+def _walks(
+    over: Overlay, lines: list[FloatArray], lengths: FloatArray, closed: BoolArray
+) -> list[tuple[int, list[_Row]]]:
+    """The points of every chain that has any, in its direction."""
+    segment = np.flatnonzero(over.chain >= 0)
+    segment = segment[np.argsort(over.chain[segment], kind="stable")]
+    nodes = np.unique(np.column_stack([np.repeat(over.chain[segment], 2), over.segments[segment].ravel()]), axis=0)
+    places = places_along(lines, nodes[:, 0], over.points[nodes[:, 1]])
+    on_grid = ((over.line_x >= 0) | (over.line_y >= 0)).tolist()
+    first = np.searchsorted(nodes[:, 0], np.arange(len(lines) + 1))
+    start = np.searchsorted(over.chain[segment], np.arange(len(lines) + 1))
+    walks = []
+    for index in np.flatnonzero(np.diff(start)).tolist():
+        some, mine = slice(*first[index : index + 2]), segment[start[index] : start[index + 1]]
+        along = dict(zip(nodes[some, 1].tolist(), places[some].tolist(), strict=True))
+        rows = _walk(over, mine, along, on_grid, float(lengths[index]), bool(closed[index]))
+        if rows:
+            walks.append((index, rows))
+    return walks
+
+
 def _walk(
-    over: Overlay,
-    topology: Topology,
-    grid: OrthogonalGrid,
-    index: int,
-    points: FloatArray,
-    closed: bool,
-) -> tuple[list[_Row], float]:
-    mine = np.flatnonzero(over.chain == index)
-    if len(mine) == 0:
-        return [], 0.0
-    line = LineString(points)
-    length = line.length
-    a, b = over.segments[mine].T
-    nodes = np.unique(over.segments[mine])
-    along = dict(zip(nodes.tolist(), shapely.line_locate_point(line, shapely.points(over.points[nodes])),
-                     strict=True))  # fmt: skip
+    over: Overlay, mine: IntArray, along: dict[int, float], on_grid: list[bool], length: float, closed: bool
+) -> list[_Row]:
+    """The points of the chain that the segments ``mine`` belong to; along: where on it its nodes lie."""
     after: dict[int, tuple[int, int]] = {}
     before: dict[int, tuple[int, int]] = {}
-    for p, q, left, right in zip(a.tolist(), b.tolist(), over.left[mine].tolist(),
-                                 over.right[mine].tolist(), strict=True):  # fmt: skip
+    for (p, q), left, right in zip(over.segments[mine].tolist(), over.left[mine].tolist(),
+                                   over.right[mine].tolist(), strict=True):  # fmt: skip
         forward = along[q] > along[p]
         if closed and abs(along[q] - along[p]) > 0.5 * length:
             forward = not forward
@@ -112,27 +145,29 @@ def _walk(
             p, q, left, right = q, p, right, left
         after[p] = before[q] = (left, right)
     rows = []
-    for node in sorted(nodes.tolist(), key=lambda n: along[n]):
-        on_grid = over.line_x[node] >= 0 or over.line_y[node] >= 0
+    for node in sorted(along, key=lambda n: along[n]):
         sides = after.get(node) or before.get(node)
         end = not closed and (node not in after or node not in before)
-        if sides is None or not (on_grid or end):
-            continue
-        copies = [_copy(over, topology, grid, node, face) for face in sides]
-        rows.append(_Row(node, float(along[node]), end, copies[0], copies[1]))
-    return rows, length
+        if sides is not None and (on_grid[node] or end):
+            rows.append(_Row(node, along[node], end, sides))
+    return rows
 
 
-def _copy(
-    over: Overlay, topology: Topology, grid: OrthogonalGrid, node: int, face: int
-) -> tuple[IntArray, FloatArray] | None:
-    """The node as seen through a face: the vertices of its quad, counting ones first, and their weights."""
-    if face < 0 or topology.face_quad[face] < 0:
-        return None
-    weights = weights_at(over, grid, np.array([node]), over.cell[face][None])[0]
-    vertices = topology.quads[topology.face_quad[face]]
-    order = np.argsort(np.abs(weights) == 0, kind="stable")
-    return vertices[order], weights[order]
+def _see(over: Overlay, topology: Topology, grid: OrthogonalGrid, rows: list[_Row]) -> None:
+    """Gives all points their copies: the vertices of the face's quad, counting ones first, and their weights."""
+    nodes = np.repeat(np.array([row.node for row in rows], dtype=np.int64), 2)
+    faces = np.array([row.faces for row in rows], dtype=np.int64).reshape(-1)
+    solid = np.flatnonzero((faces >= 0) & (topology.face_quad[faces] >= 0))
+    nodes, faces = nodes[solid], faces[solid]
+    weights = weights_at(over, grid, nodes, over.cell[faces])
+    order = np.argsort(np.abs(weights) == 0, axis=1, kind="stable")
+    vertices = np.take_along_axis(topology.quads[topology.face_quad[faces]], order, axis=1)
+    weights = np.take_along_axis(weights, order, axis=1)
+    for k, copy in zip(solid.tolist(), zip(vertices, weights, strict=True), strict=True):
+        if k % 2 == 0:
+            rows[k // 2].left = copy
+        else:
+            rows[k // 2].right = copy
 
 
 class _Builder:
@@ -141,17 +176,17 @@ class _Builder:
     def __init__(self, over: Overlay, topology: Topology, grid: OrthogonalGrid) -> None:
         self.over, self.topology = over, topology
         self.flat = np.column_stack([grid.xs[topology.vertex_grid[:, 0]], grid.ys[topology.vertex_grid[:, 1]]])
+        self.rank = self.flat.sum(axis=1).tolist()
         self.rows: list[tuple[object, ...]] = []
         self.carrier: list[int] = []
         self.fold: list[tuple[list[int], list[float], list[int]]] = []
 
     def add_chain(
-        self, chain: int, crease: int, points: FloatArray, closed: bool, rows: list[_Row], length: float
+        self, chain: int, crease: int, closed: bool, rows: list[_Row], tangents: FloatArray, length: float
     ) -> None:
-        if not rows:
-            return
-        tangents = _tangents(points, np.array([row.along for row in rows]), length, closed)
         base = len(self.rows)
+        for row in rows:
+            row.left_pair, row.right_pair = self._pair(row.left), self._pair(row.right)
         for row, tangent in zip(rows, tangents, strict=True):
             left_edge, right_edge, cos2 = self._edges(row, tangent)
             blank = (np.full(4, -1, dtype=np.int64), np.zeros(4))
@@ -165,15 +200,14 @@ class _Builder:
                 self.carrier.append(base + k)
                 self.fold.append((vertices, weights, [base + m for m in neighbours]))
 
-    def _pair(self, copy: tuple[IntArray, FloatArray] | None) -> tuple[int, int, float] | None:
-        """(a, b, t) of a copy on a grid edge, directed along +x or +y; a vertex pairs with a neighbour."""
+    def _pair(self, copy: _Copy) -> _Pair:
         if copy is None:
             return None
         vertices, weights = copy
         counting = int(np.count_nonzero(weights))
         if counting == 2:
             a, b, t = int(vertices[0]), int(vertices[1]), float(weights[1])
-            if self.flat[b].sum() < self.flat[a].sum():
+            if self.rank[b] < self.rank[a]:
                 a, b, t = b, a, 1.0 - t
             return a, b, t
         if counting == 1:
@@ -190,7 +224,7 @@ class _Builder:
             return none
         counting = int(np.count_nonzero(row.left[1]))
         if counting == 2:
-            left, right = self._pair(row.left), self._pair(row.right)
+            left, right = row.left_pair, row.right_pair
             assert left is not None
             if right is None or left[:2] == right[:2]:
                 return none
@@ -218,7 +252,7 @@ class _Builder:
         self, rows: list[_Row], k: int, closed: bool, length: float
     ) -> tuple[list[int], list[float], list[int]] | None:
         row = rows[k]
-        left, right = self._pair(row.left), self._pair(row.right)
+        left, right = row.left_pair, row.right_pair
         if row.end or left is None or right is None or left[:2] == right[:2]:
             return None
         if not MIN_EDGE_PART <= left[2] <= 1 - MIN_EDGE_PART:
@@ -241,7 +275,7 @@ class _Builder:
 
     def _both(self, row: _Row) -> tuple[int, ...]:
         """The pairs of a point in the left and the right patch; a missing right one is replaced by the left."""
-        left, right = self._pair(row.left), self._pair(row.right)
+        left, right = row.left_pair, row.right_pair
         assert left is not None
         return (*left[:2], *(right or left)[:2])
 
@@ -257,7 +291,7 @@ class _Builder:
                 break
             distance = abs(rows[m].along - rows[k].along)
             distance = min(distance, length - distance) if closed else distance
-            pair = self._pair(rows[m].left)
+            pair = rows[m].left_pair
             if pair is None:
                 continue
             if distance >= NEIGHBOUR_SPACING:
@@ -293,14 +327,11 @@ def _line_angle(u: FloatArray, v: FloatArray) -> float:
     return float(np.arctan2(abs(u[0] * v[1] - u[1] * v[0]), abs(u @ v)))
 
 
-def _tangents(points: FloatArray, along: FloatArray, length: float, closed: bool) -> FloatArray:
-    line = LineString(points)
-    step = min(_TANGENT_STEP, 0.05 * length)
+def _tangents(lines: NDArray[np.object_], lengths: FloatArray, closed: BoolArray, along: FloatArray) -> FloatArray:
+    """Unit tangents (N,2) of polylines (N,) at the places ``along`` (N,) on them."""
+    step = np.minimum(_TANGENT_STEP, 0.05 * lengths)
     before, after = along - step, along + step
-    if closed:
-        before, after = before % length, after % length
-    else:
-        before, after = np.clip(before, 0, length), np.clip(after, 0, length)
-    ends = [shapely.get_coordinates(shapely.line_interpolate_point(line, s)) for s in (before, after)]
+    places = [np.where(closed, at % lengths, np.clip(at, 0, lengths)) for at in (before, after)]
+    ends = [shapely.get_coordinates(shapely.line_interpolate_point(lines, at)) for at in places]
     result = ends[1] - ends[0]
     return np.asarray(result / np.hypot(*result.T)[:, None])

@@ -73,6 +73,12 @@ def snap_vertices(arrangement: Arrangement, grid: OrthogonalGrid) -> Arrangement
     return replace(arrangement, chains=tuple(chains), vertices=moved)
 
 
+def crossings_held(sheet: Polygon) -> int:
+    """How many crossings can have grid lines of their own on a sheet in cell lengths, at most."""
+    x0, y0, x1, y1 = sheet.bounds
+    return (int((x1 - x0) / MIN_GAP) + 1) * (int((y1 - y0) / MIN_GAP) + 1)
+
+
 def _wish_border(sheet: Polygon, wishes: tuple[list[tuple[int, float]], list[tuple[int, float]]]) -> None:
     for ring in (sheet.exterior, *sheet.interiors):
         points = shapely.get_coordinates(ring)

@@ -15,6 +15,7 @@ from shapely import LineString, Polygon
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..pattern.arrangement import Arrangement, nearest_line, segments_of
+from ..pattern.places import line_strings
 from .grid import OrthogonalGrid
 
 #: Noding grid, cell lengths: nodes snap to multiples of it. Far above rounding at 1,000 cells.
@@ -57,7 +58,7 @@ class Overlay:
 def overlay(arrangement: Arrangement, grid: OrthogonalGrid) -> Overlay:
     """Lay an arrangement over its grid. All coordinates in cell lengths."""
     sheet = arrangement.sheet
-    chains = [LineString(chain.points) for chain in arrangement.chains]
+    chains = line_strings([chain.points for chain in arrangement.chains]).tolist()
     x0, x1, y0, y1 = grid.xs[0], grid.xs[-1], grid.ys[0], grid.ys[-1]
     verticals = [LineString([(x, y0), (x, y1)]) for x in grid.xs]
     horizontals = [LineString([(x0, y), (x1, y)]) for y in grid.ys]
@@ -132,26 +133,41 @@ def _islands(
     through = inner & (chain < 0)
     patch = _components(left[through], right[through], len(area))
     given = np.zeros(len(segments), dtype=bool)
-    joins, joined = np.zeros((2, int(patch.max()) + 1), dtype=bool)
+    count = int(patch.max()) + 1
+    # Every rim segment twice: for the patch on its left and for the one on its right.
+    rim = np.flatnonzero(inner & (chain >= 0))
+    rim = rim[patch[left[rim]] != patch[right[rim]]]
+    sides = np.concatenate([patch[left[rim]], patch[right[rim]]])
+    order = np.lexsort((np.tile(rim, 2), sides))
+    mine, other = np.tile(rim, 2)[order], np.concatenate([sides[len(rim) :], sides[: len(rim)]])[order]
+    start = np.searchsorted(sides[order], np.arange(count + 1))
+    area_held, length_held = _holds(points, (line_x >= 0) | (line_y >= 0), segments[mine], sides[order], count)
+    small = np.bincount(patch, weights=area) <= MIN_PIECE
+    loose = small | ((area_held < MIN_HOLD) & (length_held < MIN_HINGE))
     lengths = np.hypot(*(points[segments[:, 1]] - points[segments[:, 0]]).T)
-    held = (line_x >= 0) | (line_y >= 0)
-    rim = inner & (chain >= 0)
-    patch_area = np.bincount(patch, weights=area)
-    for one in range(int(patch.max()) + 1):
-        mine = rim & ((patch[left] == one) != (patch[right] == one))
-        if not mine.any():
-            continue
-        nodes = np.unique(segments[mine])
-        hull = shapely.MultiPoint(points[nodes[held[nodes]]]).convex_hull
-        if patch_area[one] > MIN_PIECE and (hull.area >= MIN_HOLD or hull.length >= MIN_HINGE):
-            continue
-        other = np.where(patch[left] == one, patch[right], patch[left])
-        most = int(np.bincount(other[mine], weights=lengths[mine]).argmax())
+    joins, joined = np.zeros((2, count), dtype=bool)
+    for one in np.flatnonzero(loose & (np.diff(start) > 0)).tolist():
+        own = slice(start[one], start[one + 1])
+        around, place = np.unique(other[own], return_inverse=True)
+        most = int(around[np.bincount(place, weights=lengths[mine[own]]).argmax()])
         if joined[one] or joins[most]:
             continue
         joins[one] = joined[most] = True
-        given |= mine & (other == most)
+        given[mine[own][other[own] == most]] = True
     return given
+
+
+def _holds(
+    points: FloatArray, held: BoolArray, rims: IntArray, patches: IntArray, count: int
+) -> tuple[FloatArray, FloatArray]:
+    """Area and outline (count,) of what the held nodes of the rim segments (R,2) of each patch span."""
+    pairs = np.unique(np.column_stack([np.repeat(patches, 2), rims.ravel()]), axis=0)
+    pairs = pairs[held[pairs[:, 1]]]
+    some, group = np.unique(pairs[:, 0], return_inverse=True)
+    hulls = shapely.convex_hull(shapely.multipoints(points[pairs[:, 1]], indices=group))
+    areas, outlines = np.zeros((2, count))
+    areas[some], outlines[some] = shapely.area(hulls), shapely.length(hulls)
+    return areas, outlines
 
 
 def _line_of(values: FloatArray, lines: FloatArray) -> IntArray:
@@ -169,8 +185,10 @@ def _components(a: IntArray, b: IntArray, count: int) -> IntArray:
 def _main_component(segments: IntArray, count: int, line_x: IntArray, line_y: IntArray) -> BoolArray:
     """Segments of the component that most grid vertices belong to: lone curves inside a cell drop out."""
     label = _components(segments[:, 0], segments[:, 1], count)
-    corner = (line_x >= 0) & (line_y >= 0)
-    main = np.bincount(label, weights=corner.astype(float)).argmax()
+    # Grid vertices off the sheet have no segments left. Where the sheet has none at all, most nodes decide.
+    used = np.bincount(segments.ravel(), minlength=count) > 0
+    corner = used & (line_x >= 0) & (line_y >= 0)
+    main = np.bincount(label, weights=corner + used / (count + 1.0)).argmax()
     return np.asarray(label[segments[:, 0]] == main)
 
 

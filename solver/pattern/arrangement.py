@@ -19,11 +19,16 @@ from shapely import LineString, MultiPolygon, Point, Polygon
 from ..arrays import FloatArray, IntArray
 from ..errors import PatternError
 from .curves import CORNER, drop_repeats
+from .places import places_along
 
 #: Ends nearer than this to the border, to a crease or to each other are joined; part of the longer side.
 SNAP_TOLERANCE = 2e-3
 #: Nodes nearer than this are one node; part of the longer side. Far above rounding, far below any drawing.
 NODE_TOLERANCE = 1e-12
+#: So many pairs of a line and an end are snapped one by one.
+_MANY_SNAPS = 200_000
+#: Slivers are merged one at a time; creases that leave more of them run along each other all over the sheet.
+_MAX_SLIVERS = 200
 
 #: Where a vertex of the arrangement comes from.
 CROSSING, JUNCTION, END, CORNER_POINT = "crossing", "border junction", "end", "corner"
@@ -161,19 +166,18 @@ def _lines_of(geometry: shapely.Geometry) -> shapely.MultiLineString:
 
 def _rejoin(pieces: list[LineString], points: FloatArray) -> list[LineString]:
     """Join pieces that shapely cut at a self-crossing or at a closed curve's start, and orient them."""
-    if len(pieces) == 1:
+    if len(pieces) < 2:
         return pieces
     merged = shapely.line_merge(shapely.MultiLineString(pieces))
     result = list(merged.geoms) if hasattr(merged, "geoms") else [merged]
-    whole = LineString(points)
-    oriented = []
-    for piece in result:
-        coordinates = shapely.get_coordinates(piece)
-        middle = len(coordinates) // 2
-        first = whole.project(Point(coordinates[max(middle - 1, 0)]))
-        second = whole.project(Point(coordinates[min(middle, len(coordinates) - 1)]))
-        oriented.append(piece if second >= first else LineString(coordinates[::-1]))
-    return oriented
+    rows = [shapely.get_coordinates(piece) for piece in result]
+    middles = [len(row) // 2 for row in rows]
+    ends = [[row[max(m - 1, 0)], row[min(m, len(row) - 1)]] for row, m in zip(rows, middles, strict=True)]
+    along = places_along([points], np.zeros(2 * len(rows), dtype=np.int64), np.concatenate(ends)).reshape(-1, 2)
+    return [
+        piece if second >= first else LineString(row[::-1])
+        for piece, row, (first, second) in zip(result, rows, along, strict=True)
+    ]
 
 
 def _snap_ends(
@@ -202,8 +206,10 @@ def _snap_ends(
         target[n] = nearest.x, nearest.y
         moved[n] = True
     # Ends that meet each other: one common point, the mean; a point on the border wins.
-    for n in range(len(ends)):
-        close = np.flatnonzero(np.hypot(*(places - places[n]).T) <= tolerance)
+    around = cKDTree(places).query_ball_point(places, tolerance * (1 + 1e-9), return_sorted=True)
+    for n, near in enumerate(around):
+        close = np.array(near, dtype=np.int64)
+        close = close[np.hypot(*(places[close] - places[n]).T) <= tolerance]
         if len(close) > 1 and close[0] == n:
             fixed = close[on_border[close]]
             target[close] = target[fixed[0]] if len(fixed) else places[close].mean(axis=0)
@@ -260,9 +266,9 @@ def _node(
     """Segments (S,2) of node indices, the crease that owns each (-1 border), node coordinates (N,2)."""
     creases = [LineString(points) for points, _ in parts]
     # Targets of snapped ends lie on their line only up to rounding: put a node there.
-    ends = shapely.MultiPoint([p for points, _ in parts for p in (points[0], points[-1])])
-    border = shapely.snap(sheet.boundary, ends, 10 * node)
-    creases = [shapely.snap(line, ends, 10 * node) for line in creases]
+    ends = np.array([p for points, _ in parts for p in (points[0], points[-1])])
+    border = shapely.snap(sheet.boundary, shapely.MultiPoint(ends), 10 * node)
+    creases = _snapped(creases, ends, 10 * node)
     merged = shapely.union_all([border, *creases], grid_size=node)
     segments, points = segments_of(merged, node)
     middle = 0.5 * (points[segments[:, 0]] + points[segments[:, 1]])
@@ -272,6 +278,18 @@ def _node(
     owner[on_border] = -1
     keep = (owner >= 0) | on_border
     return segments[keep], owner[keep], points
+
+
+def _snapped(lines: list[LineString], ends: FloatArray, within: float) -> list[LineString]:
+    """The lines with points where ends (N,2) lie on them."""
+    if len(lines) * len(ends) <= _MANY_SNAPS:
+        return [shapely.snap(line, shapely.MultiPoint(ends), within) for line in lines]
+    # Shapely looks at all ends for every line: here it is told the near ones alone, once, in the same order.
+    ends = ends[np.sort(np.unique(ends, axis=0, return_index=True)[1])]
+    line, end = shapely.STRtree(shapely.points(ends)).query(lines, predicate="dwithin", distance=2 * within)
+    order = np.lexsort((end, line))
+    near = shapely.multipoints(ends[end[order]], indices=line[order])
+    return list(shapely.snap(np.array(lines, dtype=object), near, within))
 
 
 def segments_of(lines: shapely.Geometry, node: float) -> tuple[IntArray, FloatArray]:
@@ -323,15 +341,22 @@ def _merge_vertices(
     _, label = connected_components(graph, directed=False)
     target = np.arange(count)
     points = points.copy()
-    for cluster in np.flatnonzero(np.bincount(label) > 1):
-        members = marks[label == cluster]
+    tree = cKDTree(points)
+    members_of = np.split(marks[np.argsort(label, kind="stable")], np.cumsum(np.bincount(label))[:-1])
+    moved: list[int] = []
+    for members in members_of:
+        if len(members) == 1:
+            continue
         rim = members[on_border[members]]
         # One border junction each: two junctions nearer than the tolerance would otherwise pull the border in.
         keep = int(rim[0]) if len(rim) else int(members[0])
         if not len(rim):
             points[keep] = points[members].mean(axis=0)
+            moved.append(keep)
         reach = np.hypot(*(points[members] - points[keep]).T).max() * (1 + 1e-9)
-        near = np.flatnonzero(np.hypot(*(points - points[keep]).T) <= reach)
+        # The tree knows where points were: those that have moved since are looked at as well.
+        near = np.unique([*tree.query_ball_point(points[keep], reach * (1 + 1e-9)), *moved])
+        near = near[np.hypot(*(points[near] - points[keep]).T) <= reach]
         inside = near[~on_border[near] | np.isin(near, members)]
         target[inside] = keep
     segments = np.sort(target[segments], axis=1)
@@ -390,8 +415,9 @@ def _drop_slivers(
     locate: Callable[[FloatArray], FloatArray],
 ) -> tuple[IntArray, IntArray]:
     """Remove one side of every face thinner than the tolerance (curves drawn twice)."""
+    lines = shapely.linestrings(points[segments])
+    middles = shapely.points(0.5 * (points[segments[:, 0]] + points[segments[:, 1]]))
     for _ in range(20):
-        lines = shapely.linestrings(points[segments])
         faces = shapely.get_parts(shapely.polygonize(lines))
         if len(faces) == 0:
             return segments, owner
@@ -400,8 +426,14 @@ def _drop_slivers(
         if len(thin) == 0:
             return segments, owner
         face = faces[thin[0]]
-        middle = 0.5 * (points[segments[:, 0]] + points[segments[:, 1]])
-        around = shapely.distance(shapely.points(middle), face.boundary) < 1e-6 * tolerance
+        if len(thin) > _MAX_SLIVERS:
+            raise PatternError(
+                f"the creases leave {len(thin):,} pieces of paper between them that are thinner than a thousandth "
+                "of the sheet, which no net can hold",
+                element="creases",
+                place=tuple(locate(shapely.get_coordinates(face.representative_point()))[0].tolist()),
+            )
+        around = shapely.distance(middles, face.boundary) < 1e-6 * tolerance
         candidates = np.unique(owner[around & (owner >= 0)])
         if len(candidates) == 0:
             return segments, owner
@@ -411,10 +443,10 @@ def _drop_slivers(
         if len(candidates) == 1 and not (around & (owner == -1)).any():
             rim = shapely.get_coordinates(face.exterior)
             half = LineString(rim[: len(rim) // 2 + 1])
-            drop &= shapely.distance(shapely.points(middle), half) < 1e-6 * tolerance
+            drop &= shapely.distance(middles, half) < 1e-6 * tolerance
         x, y = locate(shapely.get_coordinates(face.representative_point()))[0]
         notes.append(f"{labels[loser]} runs along another line near ({x:.4g}, {y:.4g}) and was merged with it")
-        segments, owner = segments[~drop], owner[~drop]
+        segments, owner, lines, middles = segments[~drop], owner[~drop], lines[~drop], middles[~drop]
     return segments, owner
 
 
@@ -447,7 +479,9 @@ def _chains(
             elif owner[around[0][1]] != owner[around[1][1]]:
                 kinds[n] = CROSSING
     used: set[int] = set()
-    chains: list[Chain] = []
+    rows: list[FloatArray] = []
+    creases: list[int] = []
+    closed: list[bool] = []
 
     def walk(start: int, first: tuple[int, int]) -> None:
         path, (node, segment) = [start], first
@@ -458,9 +492,9 @@ def _chains(
             if node in kinds or node == start:
                 break
             node, segment = next((m, s) for m, s in neighbours[node] if s != segment)
-        row = points[np.array(path)]
-        closed = path[0] == path[-1] and start not in kinds
-        chains.append(Chain(_along(row, lines[owner[mark]]), int(owner[mark]), closed))
+        rows.append(points[np.array(path)])
+        creases.append(int(owner[mark]))
+        closed.append(path[0] == path[-1] and start not in kinds)
 
     for n in sorted(kinds):
         for step in sorted(neighbours[n]):
@@ -470,22 +504,31 @@ def _chains(
         for step in sorted(neighbours[n]):
             if step[1] not in used:
                 walk(n, step)
-    chains.sort(key=lambda chain: (chain.crease, _start_on(chain.points, lines[chain.crease])))
+    which = np.array(creases, dtype=np.int64)
+    rows = _turned(rows, lines, which)
+    chains = [
+        Chain(rows[k], creases[k], closed[k]) for k in np.lexsort((_starts(rows, lines, which), which)).tolist()
+    ]
     order = sorted(kinds)
     vertices = points[np.array(order, dtype=np.int64)].reshape(-1, 2)
     return tuple(chains), vertices, tuple(kinds[n] for n in order)
 
 
-def _start_on(row: FloatArray, line: FloatArray) -> float:
-    middle = len(row) // 2
-    return float(LineString(line).project(Point(0.5 * (row[middle - 1] + row[middle]))))
+def _starts(rows: list[FloatArray], lines: list[FloatArray], which: IntArray) -> FloatArray:
+    """Where along their creases ``which`` the chains lie: their middles."""
+    a, b = _middle_segments(rows)
+    return places_along(lines, which, 0.5 * (a + b))
 
 
-def _along(row: FloatArray, line: FloatArray) -> FloatArray:
-    """The chain turned to run in its crease's direction."""
-    whole = LineString(line)
-    middle = len(row) // 2
-    a, b = row[middle - 1], row[middle]
+def _turned(rows: list[FloatArray], lines: list[FloatArray], which: IntArray) -> list[FloatArray]:
+    """The chains turned to run in the directions of their creases ``which``."""
+    a, b = _middle_segments(rows)
     # Two points a quarter of the middle segment in: away from crossings and from a closed line's start.
-    near, far = whole.project(Point(0.75 * a + 0.25 * b)), whole.project(Point(0.25 * a + 0.75 * b))
-    return row if far >= near else row[::-1]
+    quarters = np.concatenate([0.75 * a + 0.25 * b, 0.25 * a + 0.75 * b])
+    near, far = places_along(lines, np.tile(which, 2), quarters).reshape(2, -1)
+    return [row if ahead else row[::-1] for row, ahead in zip(rows, far >= near, strict=True)]
+
+
+def _middle_segments(rows: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
+    ends = np.array([row[len(row) // 2 - 1 : len(row) // 2 + 1] for row in rows])
+    return ends[:, 0], ends[:, 1]

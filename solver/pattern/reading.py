@@ -7,10 +7,11 @@ from pathlib import Path
 
 from ..errors import CurvefoldError, ReadError
 from .crease_pattern import CreasePattern
+from .fold_file import read_fold
 from .svg import read_svg
 
 #: Suffix -> reader. A new format is one line here.
-READERS: dict[str, Callable[[str | Path], CreasePattern]] = {".svg": read_svg}
+READERS: dict[str, Callable[[str | Path], CreasePattern]] = {".svg": read_svg, ".fold": read_fold}
 
 
 def read_pattern(path: str | Path) -> CreasePattern:

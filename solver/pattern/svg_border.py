@@ -52,7 +52,7 @@ def outer_rings(curves: Sequence[Curve], indices: Sequence[int], size: float) ->
     if not lines:
         return []
     _check_crossings(lines)
-    faces = shapely.get_parts(shapely.polygonize([shapely.node(shapely.MultiLineString(lines))]))
+    faces = shapely.get_parts(shapely.polygonize([_noded(lines)]))
     # Faces of no width (a line drawn twice, not quite) are no paper.
     faces = [face for face in faces if face.area > tolerance * tolerance]
     if not faces:
@@ -96,6 +96,15 @@ def _joined_lines(curves: Sequence[Curve], indices: Sequence[int], tolerance: fl
                 continue
         lines.append(shapely.LineString(points))
     return lines
+
+
+def _noded(lines: Sequence[shapely.LineString]) -> shapely.Geometry:
+    """The lines cut where they meet."""
+    together = shapely.MultiLineString(lines)
+    try:
+        return shapely.node(together)
+    except shapely.GEOSException:  # lines that nearly coincide can be too much for it
+        return shapely.union_all([together])
 
 
 def _check_crossings(lines: Sequence[shapely.LineString]) -> None:

@@ -78,6 +78,23 @@ def test_whole_life(main, drawings, tmp_path, capsys):
     assert stamps(out)["a"] != second["a"]
 
 
+def test_results_are_drawings_again(main, drawings, tmp_path, capsys):
+    """FOLD files in a folder are drawings like any other, and none is written over."""
+    folder = tmp_path / "flat"
+    assert main(["fold", str(drawings / "a.svg"), "--out", str(folder), *QUICK]) == 0
+    out = tmp_path / "out"
+    assert main(["batch", str(folder), "--out", str(out), *QUICK]) == 0
+    assert {name: row["result"] for name, row in rows(out).items()} == {"folded": "folded"}
+    assert (out / "folded" / "folded.fold").is_file()
+
+    # The folder of its results is the one where it lies.
+    before = (out / "folded" / "folded.fold").read_bytes()
+    capsys.readouterr()
+    assert main(["batch", str(out / "folded" / "folded.fold"), "--out", str(out), *QUICK]) == 1
+    assert "it lies where its results would be written" in capsys.readouterr().out
+    assert (out / "folded" / "folded.fold").read_bytes() == before
+
+
 def test_list_with_rendering_and_equal_names(main, drawings, tmp_path):
     (drawings / "other").mkdir()
     (drawings / "other" / "a.svg").write_text((drawings / "c.svg").read_text())
@@ -131,3 +148,21 @@ def test_a_program_is_started_again_by_its_own_path(extension, monkeypatch):
 
     monkeypatch.setattr(batch, "bpy", FakeBlender)
     assert batch._worker_command()[0] == ["/opt/blender/blender", "--command", "curvefold"]
+
+
+def test_many_drawings_have_several_sheets_and_names_of_their_own(extension, tmp_path):
+    batch, sheets = extension("curvefold_addon.batch"), extension("curvefold_addon.bridge.contact_sheet")
+    tiles = [sheets.Tile(str(k), "", None) for k in range(205)]
+    three = ["contact_sheet-2.png", "contact_sheet-3.png", "contact_sheet.png"]
+    said = batch._save_contact_sheets(tmp_path, tiles)
+    assert sorted(path.name for path in tmp_path.iterdir()) == three
+    assert said == f"{tmp_path / three[2]} to {tmp_path / three[1]}"
+    assert batch._save_contact_sheets(tmp_path, tiles[:100]) == str(tmp_path / three[2])
+    assert [path.name for path in tmp_path.iterdir()] == three[2:]
+
+    # A folder of results must not stand where the table or a sheet will be written.
+    names = ["summary.csv.svg", "Contact_Sheet.png.svg", "contact_sheet-2.png.svg"]
+    tasks = batch._tasks([tmp_path / name for name in names], tmp_path, False, [])
+    assert [task.folder.name for task in tasks] == [
+        "summary.csv-2", "Contact_Sheet.png-2", "contact_sheet-2.png-2"
+    ]  # fmt: skip

@@ -1,4 +1,7 @@
-"""SVG drawings as curves: imported, dropped, and the samples."""
+"""Drawings as curves: imported, dropped, and the samples."""
+
+import itertools
+import json
 
 import bpy
 import numpy as np
@@ -22,6 +25,74 @@ def test_a_drawing_is_added_at_the_cursor_in_true_scale(extension, drawing):
     assert not bpy.data.objects
 
 
+@pytest.fixture
+def fold_file(tmp_path):
+    """A square of 100 mm with one arc of 16 edges across, folded in the file's own frame and flat in a second."""
+    arc = [(100 * k / 16, 45 + 60 * (k / 16) * (1 - k / 16)) for k in range(17)]
+    points = [(0, 0), (100, 0), (100, 45), (100, 100), (0, 100), (0, 45), *arc[1:-1]]
+    chain = [5, *range(6, 21), 2]
+    content = {
+        "frame_classes": ["foldedForm"],
+        "frame_unit": "mm",
+        "vertices_coords": [(x, y, 0.01 * x * y) for x, y in points],
+        "edges_vertices": [*([k, (k + 1) % 6] for k in range(6)), *itertools.pairwise(chain)],
+        "edges_assignment": [*"BBBBBB", *["V"] * 16],
+        "file_frames": [
+            {
+                "frame_classes": ["creasePattern"],
+                "frame_parent": 0,
+                "frame_inherit": True,
+                "vertices_coords": points,
+            }
+        ],
+    }
+    path = tmp_path / "folded arc.fold"
+    path.write_text(json.dumps(content))
+    return path
+
+
+def test_a_fold_file_is_a_drawing(extension, fold_file):
+    bpy.context.scene.unit_settings.scale_length = 0.01
+    bpy.ops.ed.undo_push(message="before")
+    assert bpy.ops.curvefold.import_drawing("EXEC_DEFAULT", True, filepath=str(fold_file)) == {"FINISHED"}
+    sheet = bpy.context.active_object
+    assert sheet.name == "folded arc"
+    assert tuple(sheet.dimensions) == pytest.approx((10, 10, 0))
+    (crease,) = sheet.children
+    assert (crease.name, crease.curvefold.assignment) == ("valley 1", "V")
+    assert crease.parent == sheet
+    pattern = extension("curvefold_addon.bridge.drawing").read_drawing(sheet)
+    assert np.ptp(pattern.boundary, axis=0) * pattern.unit_mm == pytest.approx([100, 100])
+    assert [len(one.points) for one in pattern.creases] == [17]
+    bpy.ops.ed.undo()
+    assert not bpy.data.objects
+
+
+def test_a_fold_file_is_folded(fold_file):
+    assert bpy.ops.curvefold.fold_drawing(filepath=str(fold_file), resolution=12) == {"FINISHED"}
+    paper = bpy.context.active_object
+    assert paper.data.curvefold.is_paper
+    heights = [vertex.co.z for vertex in paper.data.vertices]
+    assert max(heights) - min(heights) > 0.005
+    assert max(paper.dimensions) < 0.11
+
+
+def test_a_folded_form_is_one_sentence(fold_file):
+    content = json.loads(fold_file.read_text())
+    del content["file_frames"]
+    fold_file.write_text(json.dumps(content))
+    for operator in (bpy.ops.curvefold.import_drawing, bpy.ops.curvefold.fold_drawing):
+        with pytest.raises(RuntimeError, match=r"folded arc\.fold: it holds only a folded form"):
+            operator(filepath=str(fold_file))
+    assert not bpy.data.objects
+
+
+def test_both_kinds_of_files_are_offered():
+    for name in ("import_drawing", "fold_drawing"):
+        properties = getattr(bpy.ops.curvefold, name).get_rna_type().properties
+        assert properties["filter_glob"].default == "*.svg;*.fold"
+
+
 def test_a_bad_drawing_is_one_sentence(broken_drawing):
     with pytest.raises(RuntimeError, match=r"broken\.svg") as caught:
         bpy.ops.curvefold.import_drawing(filepath=str(broken_drawing))
@@ -43,10 +114,10 @@ def test_only_in_object_mode(drawing):
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def test_a_dropped_drawing(extension, drawing, monkeypatch):
+def test_a_dropped_drawing(extension, drawing, fold_file):
     handler = bpy.types.CURVEFOLD_FH_drawing
     assert handler.bl_import_operator == "curvefold.import_drawing"
-    assert handler.bl_file_extensions == ".svg"
+    assert handler.bl_file_extensions == ".svg;.fold"
     window = bpy.context.window_manager.windows[0]
     areas = {area.type: area for area in window.screen.areas}
     with bpy.context.temp_override(window=window, area=areas["VIEW_3D"]):
@@ -67,6 +138,12 @@ def test_a_dropped_drawing(extension, drawing, monkeypatch):
             for other in others:
                 bpy.utils.register_class(other)
     assert bpy.context.active_object.name == "arc"
+    with bpy.context.temp_override(window=window, area=areas["VIEW_3D"]):
+        # Nobody else reads these.
+        assert bpy.ops.wm.drop_import_file(
+            "INVOKE_DEFAULT", directory=str(fold_file.parent), files=[{"name": fold_file.name}]
+        ) == {"FINISHED"}
+    assert bpy.context.active_object.name == "folded arc"
     with bpy.context.temp_override(window=window, area=areas["OUTLINER"]):
         assert not handler.poll_drop(bpy.context)
 

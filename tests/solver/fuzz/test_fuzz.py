@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import io
+import json
 import time
+from collections.abc import Callable
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -14,10 +17,15 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import solver
-from benchmarks.fuzz_inputs import DOORS, RESOLUTION, TRIED_ON, made_svg, not_sides
+from benchmarks.fuzz_inputs import DOORS, RESOLUTION, TRIED_ON, made_fold, made_svg, not_sides, true_fold
 from benchmarks.fuzz_run import attempt, scratch
 from solver.description import parse_handles
+from solver.pattern.fold_file import read_fold
 
+FOLD_KEYS = (
+    "vertices_coords", "edges_vertices", "edges_assignment", "edges_foldAngle", "edges_curvefold:crease",
+    "faces_vertices", "file_frames", "frame_classes", "frame_inherit", "frame_parent", "frame_unit", "frame_title",
+)  # fmt: skip
 #: Inputs for each door; ``python -m benchmarks.fuzz`` makes as many as one likes.
 FEW = settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 ANY_JSON = st.recursive(
@@ -49,6 +57,14 @@ def test_any_json_is_a_description_or_handles_or_refused(data: Any) -> None:
     for read in (solver.FoldDescription.from_json, parse_handles):
         with contextlib.suppress(solver.CurvefoldError):
             read(data)
+
+
+@FEW
+@given(data=ANY_JSON, key=st.sampled_from(FOLD_KEYS), kind=st.randoms(use_true_random=False))
+def test_any_json_in_a_fold_file_is_refused_or_read(data: Any, key: str, kind: Random) -> None:
+    content = {**true_fold(kind), key: data}
+    with contextlib.suppress(solver.CurvefoldError):
+        read_fold(io.StringIO(json.dumps(content)))
 
 
 HUGE = 10**400
@@ -124,13 +140,14 @@ def test_creases_that_all_but_touch_mark_sides_of_faces_only() -> None:
     assert not_sides(net) == []
 
 
-def test_the_generator_reaches_the_net() -> None:
+@pytest.mark.parametrize(("suffix", "make"), [(".svg", made_svg), (".fold", made_fold)])
+def test_the_generators_reach_the_net(suffix: str, make: Callable[[Random], bytes]) -> None:
     """A fuzzer whose input is always refused at the first line tests nothing."""
     read, refused = 0, set()
     with scratch() as folder:
         for seed in range(60):
-            path = Path(folder) / "drawing.svg"
-            path.write_bytes(made_svg(Random(seed)))
+            path = Path(folder) / f"drawing{suffix}"
+            path.write_bytes(make(Random(seed)))
             try:
                 solver.read_pattern(path)
                 read += 1
@@ -138,6 +155,15 @@ def test_the_generator_reaches_the_net() -> None:
                 refused.add(type(error))
     assert read >= 10
     assert refused >= {solver.ReadError, solver.PatternError}
+
+
+def test_a_sheet_on_which_no_grid_line_crosses_another_is_refused() -> None:
+    """All grid vertices lie off this zigzag, and were taken for it."""
+    right = [(1.0, 0.067), (1.2, 1.179), (1.0, 2.012), (1.2, 3.122), (1.0, 4.161), (1.2, 5.141)]
+    left = [(0.0, 0.104), (0.2, 1.015), (0.0, 2.127), (0.2, 3.108), (0.0, 4.187), (0.2, 5.129)]
+    creases = [solver.Crease(ends) for ends in list(zip(left, right, strict=True))[1:-1]]
+    with pytest.raises(solver.NetError, match="finer resolution"):
+        solver.build_net(solver.CreasePattern([*right, *left[::-1]], creases=creases), 6)
 
 
 BOMB = '<!DOCTYPE svg [<!ENTITY a "{}">{}]><svg xmlns="http://www.w3.org/2000/svg">&z;</svg>'
