@@ -1,4 +1,4 @@
-"""``blender --command curvefold fold …`` and ``… batch …``.
+"""``blender --command curvefold fold …``, ``… batch …`` and ``… verify …``.
 
 With the bpy module instead of a Blender program, ``python -m curvefold_addon fold …`` in a checkout
 calls the same ``main``.
@@ -14,8 +14,8 @@ import bpy
 
 from .. import solver
 from ..solver import command_line
-from . import batch, paper_material, scene
-from .bridge import mesh, papers
+from . import batch, line_materials, paper_material, scene
+from .bridge import line_objects, mesh, papers
 from .whole_files import OutputError, check_writable, whole_file
 
 COMMAND = "curvefold"
@@ -25,7 +25,7 @@ _command = None
 
 
 def main(argv: list[str]) -> int:
-    """Runs ``fold …`` or ``batch …`` and returns the exit code."""
+    """Runs ``fold …``, ``batch …`` or ``verify …`` and returns the exit code."""
     try:
         arguments, rest = _parser().parse_known_args(argv)
         if rest and arguments.run is not run_batch:
@@ -40,7 +40,7 @@ def main(argv: list[str]) -> int:
 
 def fold_parser(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
     """The arguments of ``fold``: the solver's own, and what Blender adds to them."""
-    parser.add_argument("pattern", metavar="PATTERN", help="the drawing to fold (.svg)")
+    parser.add_argument("pattern", metavar="PATTERN", help="the drawing to fold (.svg, .fold)")
     parser.add_argument("--out", required=True, metavar="DIR", help="where the results go")
     command_line.add_fold_arguments(parser)
     parser.add_argument("--render", metavar="PNG", type=_path_ending(".png"), help="render a picture in Cycles")
@@ -80,13 +80,20 @@ def run_batch(arguments: argparse.Namespace, rest: list[str]) -> int:
     )
 
 
+def run_verify(arguments: argparse.Namespace, rest: list[str]) -> int:
+    """Checks whether a folded mesh is paper."""
+    return int(command_line.run_verify(arguments, sys.stderr))
+
+
 def _show(result: solver.FoldResult, arguments: argparse.Namespace) -> None:
     # An empty file, whatever the user's start-up file holds; the extension stays enabled.
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     paper = mesh.add_paper(result, bpy.context.scene.collection, paper_material.paper_material())
-    papers.keep(paper.data, result)
+    papers.keep(paper, result)
     width, height = arguments.size
     scene.set_up(paper, scene.PictureSettings(width, height, arguments.samples, arguments.threads))
+    if arguments.rulings:
+        _add_rulings(paper, result)
     if arguments.render:
         with whole_file(arguments.render) as partial:
             scene.render(str(partial))
@@ -97,9 +104,17 @@ def _show(result: solver.FoldResult, arguments: argparse.Namespace) -> None:
             )
 
 
+def _add_rulings(paper: bpy.types.Object, result: solver.FoldResult) -> None:
+    """Rulings, which the picture shows, and the Gauss image beside the paper, which it does not."""
+    net, positions = line_objects.in_metres(result)
+    line_objects.add_rulings(paper, net, positions, line_materials.of_rulings())
+    image = line_objects.add_gauss_image(paper, net, positions, line_materials.of_gauss_images())
+    image.hide_render = True
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog=COMMAND, description="Folds paper along curves.", allow_abbrev=False)
-    commands = parser.add_subparsers(title="commands", required=True, metavar="fold | batch")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="fold | batch | verify")
     fold = commands.add_parser(
         "fold", help="fold one drawing", description="Folds one drawing.", allow_abbrev=False
     )
@@ -116,6 +131,14 @@ def _parser() -> argparse.ArgumentParser:
     many.add_argument("--jobs", type=_positive, default=1, help="drawings folded at the same time (1)")
     many.add_argument("--render", action="store_true", help="render every fold")
     many.set_defaults(run=run_batch)
+    check = commands.add_parser(
+        "verify",
+        help="check whether a folded mesh is paper",
+        description="Checks whether a folded mesh, with its flat sheet beside it, is paper.",
+        allow_abbrev=False,
+    )
+    command_line.add_verify_arguments(check)
+    check.set_defaults(run=run_verify)
     return parser
 
 

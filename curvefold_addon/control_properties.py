@@ -13,6 +13,7 @@ from bpy.props import (
 )
 
 from .. import solver
+from ..solver.description import MOST_WEIGHT
 from . import live
 
 SIDES = (
@@ -43,7 +44,8 @@ class CreaseSettings(bpy.types.PropertyGroup):
         subtype="PERCENTAGE",
         default=100.0,
         min=0.0,
-        max=100.0,
+        max=200.0,
+        soft_max=100.0,
         update=wake,
     )
     use_angle: BoolProperty(name="Own Angle", description="Fold it to an angle of its own", update=wake)
@@ -218,6 +220,7 @@ def _weight(name: str, default: float, words: str, description: str) -> object:
         description=description,
         default=default,
         min=0.0 if name not in _NEEDED else 1e-3,
+        max=MOST_WEIGHT,
         soft_max=100.0 * default,
         options=set(),  # the solver begins anew with other weights, so they are no matter for animation
         update=wake,

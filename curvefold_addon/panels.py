@@ -198,10 +198,21 @@ class OverlaysPanel(Tab, bpy.types.Panel):
         settings = context.scene.curvefold
         column = self.layout.column(align=True)
         column.active = settings.show
-        for name in ("creases", "angles", "rulings", "pulls", "stretch", "troubles"):
+        for name in ("creases", "angles", "rulings", "gauss_image", "pulls", "stretch", "troubles"):
             column.prop(settings, name)
         if settings.show and settings.stretch:
             say(column, context, "Green from 0.3 %, yellow from 0.6 %, red from 1 %", "BLANK1")
+        paper = live.active_paper(context)
+        if paper is None:
+            return
+        if settings.show and (settings.rulings or settings.gauss_image):
+            if baking.is_baked(paper.data):
+                say(column, context, wording.NO_RULINGS_BAKED, "INFO")
+            elif live.session(paper.data) is None:
+                say(column, context, wording.NO_RULINGS_ASLEEP, "INFO")
+        column = self.layout.column(align=True)
+        column.operator("curvefold.rulings_as_object", icon="OUTLINER_OB_CURVE")
+        column.operator("curvefold.gauss_image_as_object", icon="OUTLINER_OB_CURVE")
 
 
 class AnimationPanel(PaperPanel, bpy.types.Panel):
@@ -237,6 +248,7 @@ class AdvancedPanel(PaperPanel, bpy.types.Panel):
         column.prop(mesh.curvefold, "angle")
         column.prop(mesh.curvefold, "resolution")
         column.operator("curvefold.settle", text="Fold until Settled", icon="CHECKMARK")
+        column.operator("curvefold.check_paper", icon="VIEWZOOM")
         if report is not None and report.vertices:
             say(column, context, wording.effort(report))
 

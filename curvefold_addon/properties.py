@@ -166,6 +166,12 @@ class OverlaySettings(bpy.types.PropertyGroup):
     angles: BoolProperty(name="Fold Angles", description="Fold angles in figures", default=False)
     stretch: BoolProperty(name="Stretch", description="Where the paper is stretched", default=False)
     rulings: BoolProperty(name="Rulings", description="The straight lines of the bent paper", default=False)
+    gauss_image: BoolProperty(
+        name="Gauss Image",
+        description="The directions that the paper faces, as points of a ball beside it: of bent paper they are "
+        "curves, one colour a patch",
+        default=False,
+    )
     pulls: BoolProperty(
         name="Pull Lines",
         description="From each handle's point to its target, and between points that are joined",

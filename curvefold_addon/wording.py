@@ -23,6 +23,8 @@ ASLEEP = "Asleep: it wakes when something moves"
 NOT_LIVE = "Not live: it stays as it is"
 KEYED = "Its shape keys hide how it folds: remove them"
 BAKED = "Baked: it plays its shape keys"
+NO_RULINGS_BAKED = "A baked paper shows no rulings and no Gauss image: free the bake"
+NO_RULINGS_ASLEEP = "Asleep: rulings and Gauss image come when it wakes"
 
 
 def stretch(report: Report) -> str:

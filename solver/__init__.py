@@ -23,17 +23,21 @@ from .errors import (
     PatternError,
     ReadError,
 )
+from .files.mesh_reading import read_mesh
 from .files.results import write_results
 from .fold import FoldResult, Outcome, fold
 from .folding import FoldModel, SqpReport, Status
+from .gauss_image import GaussImage, gauss_image
 from .measurement import Measurement, measure
 from .net.build import build_net
 from .net.piecewise_dog import PiecewiseDog
 from .net.render_map import RenderMap
 from .pattern.crease_pattern import Crease, CreasePattern
 from .pattern.reading import read_pattern
-from .rulings import GaussImage, RulingKind, Rulings, gauss_image, rulings
+from .rulings import RulingKind, Rulings, rulings
+from .sheet_mesh import SheetMesh
 from .verify import Fault, Verification, verify
+from .verify_mesh import verify_mesh
 
 __all__ = [
     "Amount",
@@ -62,6 +66,7 @@ __all__ = [
     "RenderMap",
     "RulingKind",
     "Rulings",
+    "SheetMesh",
     "Side",
     "SqpReport",
     "Status",
@@ -73,8 +78,10 @@ __all__ = [
     "measure",
     "read_description",
     "read_handles",
+    "read_mesh",
     "read_pattern",
     "rulings",
     "verify",
+    "verify_mesh",
     "write_results",
 ]

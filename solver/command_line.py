@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import json
+import os
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,12 +13,16 @@ from typing import Any, TextIO
 
 from .description import FoldDescription, read_description, read_handles
 from .errors import CurvefoldError
-from .files.results import write_results
+from .files.mesh_reading import read_mesh
+from .files.results import FOLD_NAME, write_results
+from .files.ruling_files import RULINGS_SVG
 from .fold import FoldResult, fold, in_words
 from .folding import SqpReport
 from .pattern.reading import read_pattern
+from .verify_mesh import verdict, verify_mesh
 
-#: Exit codes: everything asked was reached; folded, but not all that was asked; the input cannot be used.
+#: Exit codes: everything asked was reached, or a mesh is paper; folded, but not all that was asked, or a mesh is no
+#: paper; the input cannot be used.
 REACHED, NOT_REACHED, BAD_INPUT = 0, 1, 2
 #: Seconds between two lines of progress.
 _PROGRESS_SECONDS = 1.0
@@ -48,6 +54,10 @@ def add_fold_arguments(parser: argparse.ArgumentParser) -> None:
         "--assignments", choices=("free", "bind"), default=None,
         help=f"whether the drawing's mountains and valleys bind the fold (default {default.assignments})",
     )  # fmt: skip
+    parser.add_argument(
+        "--rulings", action="store_true",
+        help="write the rulings (rulings.obj, rulings.svg) and the Gauss image (gauss_image.obj) too",
+    )  # fmt: skip
 
 
 def description_of(args: argparse.Namespace) -> FoldDescription:
@@ -70,6 +80,8 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
     args: pattern, out, and what ``add_fold_arguments`` added. on_result(result, folder) may write more.
     """
     try:
+        folder = Path(args.out)
+        _check_apart(Path(args.pattern), folder)
         description = description_of(args)
         pattern = read_pattern(args.pattern)
         try:
@@ -77,8 +89,7 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
         except CurvefoldError as error:
             source = _source(args, error.where.element or "")
             raise error.in_file(str(source)) if error.where.file is None else error from None
-        folder = Path(args.out)
-        write_results(result, folder)
+        write_results(result, folder, args.rulings)
         if on_result is not None:
             on_result(result, folder)
     except CurvefoldError as error:
@@ -88,6 +99,37 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
         print(f"note: {note}", file=stream)
     print(result.summary(), file=stream)
     return REACHED if result.status.ok else NOT_REACHED
+
+
+def add_verify_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of ``verify``."""
+    parser.add_argument("mesh", metavar="FILE", help="a folded mesh with its flat sheet (.obj, .fold)")
+    parser.add_argument("--json", action="store_true", help="print what was found as JSON, figures and faults")
+
+
+def run_verify(args: argparse.Namespace, stream: TextIO) -> int:
+    """Check a folded mesh: a sentence, then its faults, to ``stream``; JSON to the standard output.
+
+    args: what ``add_verify_arguments`` added. Returns the exit code, raises nothing of ours.
+    """
+    try:
+        found = verify_mesh(read_mesh(args.mesh))
+    except CurvefoldError as error:
+        print(in_words(error), file=stream)
+        return BAD_INPUT
+    if args.json:
+        print(json.dumps(found.to_json(), indent=1, allow_nan=False))
+    else:
+        print(f"{args.mesh} is {verdict(found)}", file=stream)
+        for fault in found.faults[1:]:
+            print(f"also: {fault}", file=stream)
+    return REACHED if found.ok else NOT_REACHED
+
+
+def _check_apart(drawing: Path, folder: Path) -> None:
+    """Raises CurvefoldError when a result would be written over the drawing."""
+    if os.path.realpath(drawing) in {os.path.realpath(folder / name) for name in (FOLD_NAME, RULINGS_SVG)}:
+        raise CurvefoldError("the result would be written over it; choose another folder", file=str(drawing))
 
 
 def _source(args: argparse.Namespace, element: str) -> str:
@@ -118,7 +160,12 @@ def main(argv: list[str] | None, stream: TextIO) -> int:
     parser = argparse.ArgumentParser(prog="python -m solver", description="Fold paper along curves.")
     commands = parser.add_subparsers(dest="command", required=True)
     command = commands.add_parser("fold", help="fold a drawing and write OBJ, FOLD and a report")
-    command.add_argument("pattern", metavar="PATTERN.svg")
+    command.add_argument("pattern", metavar="PATTERN", help="the drawing to fold (.svg, .fold)")
     command.add_argument("--out", required=True, metavar="DIR", help="folder for the results")
     add_fold_arguments(command)
-    return run_fold(parser.parse_args(argv), stream)
+    command.set_defaults(run=run_fold)
+    command = commands.add_parser("verify", help="check whether a folded mesh is paper")
+    add_verify_arguments(command)
+    command.set_defaults(run=run_verify)
+    arguments = parser.parse_args(argv)
+    return int(arguments.run(arguments, stream))

@@ -18,6 +18,9 @@ FORMAT_VERSION = 1
 RESOLUTIONS = (4, 1000)
 #: More iterations than any fold needs.
 MAX_ITERATIONS = 1_000_000
+#: No weight may be larger: with this one for any of them an arc at 50 degrees comes to rest, with 1e30 for isometry
+#: the linear system breaks.
+MOST_WEIGHT = 1e10
 #: JSON files larger than this are refused before they are parsed, bytes.
 _MAX_BYTES = 16 * 1024 * 1024
 
@@ -76,8 +79,8 @@ class Weights:
     def __post_init__(self) -> None:
         for entry in fields(self):
             value = getattr(self, entry.name)
-            if not (is_number(value) and value >= 0):
-                raise DescriptionError("a weight must be a number that is not negative", element=entry.name)
+            if not (is_number(value) and 0 <= value <= MOST_WEIGHT):
+                raise DescriptionError(f"a weight must be a number from 0 to {MOST_WEIGHT:g}", element=entry.name)
             object.__setattr__(self, entry.name, float(value))
 
 
@@ -116,7 +119,10 @@ class FoldDescription:
 
     @staticmethod
     def from_json(data: Any) -> FoldDescription:
-        """Raises DescriptionError or HandleError on anything that is not a description."""
+        """Raises DescriptionError or HandleError on anything that is not a description.
+
+        Handles fold by themselves: where they are given and no angle is, there is no drive.
+        """
         if not isinstance(data, dict):
             raise DescriptionError("a fold description must be a JSON object")
         known = {entry.name for entry in fields(FoldDescription)}
@@ -127,6 +133,8 @@ class FoldDescription:
             raise DescriptionError(f"format {data.get('format')!r} is not known", element="format")
         values = {name: data[name] for name in known if name in data}
         values["handles"] = parse_handles(data.get("handles", []))
+        if values["handles"]:
+            values.setdefault("angle", None)
         values["controls"] = controls_from_json(data.get("controls", []))
         if "weights" in data:
             try:

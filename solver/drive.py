@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from .arrays import BoolArray, FloatArray
-from .controls.pull import Pull, Term
+from .controls.pull import Finding, Lack, Pull, Term
 from .measurement import measure
 from .net.piecewise_dog import PiecewiseDog
 from .objectives.fold_angle import driven_points, fold_angle
@@ -24,6 +24,8 @@ ANGLE_RATE = 0.4
 HALF_ANGLE = 4.0
 #: Fold that the first offset gives a flat sheet, degrees: the ramp starts from it, or it would flatten again.
 FIRST_ANGLE = 2.0
+#: A crease has reached its angle when the median along it is this part of it.
+ANGLE_REACHED = 0.8
 #: Easing multiplies the pull by a power of budget / stretch, but by no less and no more than this.
 _EASE_POWER, _EASE_LEAST, _EASE_MOST = 1.5, 0.25, 0.7
 #: The pull is eased at most so often.
@@ -78,7 +80,7 @@ class AngleDrive(Pull):
         return [fold_angle(self._net, self._now[self._crease], weight)]
 
     def asks(self, x: FloatArray) -> bool:
-        return bool(self.angle) and bool((self._amount > 0).any())
+        return bool(self.angle) and self._weight > 0 and bool((self._amount > 0).any())
 
     def begin(self, x: FloatArray) -> None:
         if self.angle is not None:
@@ -114,6 +116,21 @@ class AngleDrive(Pull):
     def go_back(self, mark: object) -> None:
         if isinstance(mark, np.ndarray) and self.angle is not None:
             self._now = mark
+
+    def findings(self, x: FloatArray) -> list[Finding]:
+        """The first of the creases that stay well below what the drive asks of them, and how many more do."""
+        if self.angle is None or self._weight == 0:
+            return []
+        free = np.unique(self._crease[~self._released])
+        present, targets = present_angles(self._net, x), self._targets()
+        short = free[present[free] < ANGLE_REACHED * targets[free]]
+        if len(short) == 0:
+            return []
+        k, more = int(short[0]), len(short) - 1
+        sentence = f"{self._net.crease_labels[k]} came to {present[k]:.0f}° of the {targets[k]:.0f}° asked"
+        if more:
+            sentence += f", and {more} more {'creases do' if more > 1 else 'does'} not reach theirs either"
+        return [Finding(Lack.DEPTH, sentence, k)]
 
     def _targets(self) -> FloatArray:
         return np.clip((self.angle or 0.0) * self._amount, 0.0, 180.0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -13,9 +12,6 @@ import numpy as np
 import shapely
 
 from .arrays import FloatArray
-from .controls.amount import Amount
-from .controls.angle import Angle
-from .controls.control import crease_index
 from .controls.pull import Finding, Lack
 from .description import FoldDescription, Handle
 from .drive import MAX_MEAN_STRETCH
@@ -30,10 +26,10 @@ from .verify import verify
 
 #: SQP iterations between two calls of ``progress``.
 _REPORT_EVERY = 10
-#: The drive has reached its angle when the median fold angle is this part of it.
-ANGLE_REACHED = 0.85
 #: A sheet thinner than this is flat, net units.
 _FLAT = 1e-6
+#: What creases are called that lie on a side, and how many of them a terminal is told.
+_SIDES, _MOST_SIDES = {"V": "valley", "M": "mountain", "U": "on no side"}, 12
 
 Progress = Callable[[int, SqpReport], None]
 
@@ -101,12 +97,15 @@ class FoldResult:
         """A few lines for a terminal."""
         m = self.measurement
         low, median, high = fold_angle_quantiles(m)
+        sides = [f"{label} {_SIDES[m.side(k)]}" for k, label in enumerate(self.net.crease_labels[:_MOST_SIDES])]
+        more = len(self.net.crease_labels) - len(sides)
         lines = [
             self.detail,
             f"{len(self.net.rest)} vertices, {len(self.net.patch_polygons)} patches, "
             f"{self.iterations} iterations, {self.seconds:.1f} s",
             f"fold angle {low:.0f}° – {median:.0f}° – {high:.0f}° (10 %, median, 90 %), "
             f"{m.folded_part:.1%} of the crease points folded",
+            ", ".join([*sides, f"and {more} more"] if more else sides),
             f"stretch mean {m.stretch.mean():.1e}, max {m.stretch.max():.1e}; "
             f"DOG residual max {self.last.constraint:.1e}",
         ]
@@ -242,11 +241,12 @@ def _in_words(
         return Outcome.NOT_FINITE, Outcome.NOT_FINITE.sentence
     if report.handle_error > REACHED * net.frame.unit:
         return Outcome.OUT_OF_REACH, _out_of_reach(description.handles, net, model, report)
+    stopped = f"stopped after {description.max_iterations} iterations before it settled"
     away = [finding.sentence for finding in findings if finding.lack is Lack.REACH]
     if away:
-        return Outcome.OUT_OF_REACH, "; ".join(away)
+        return Outcome.OUT_OF_REACH, "; ".join([*away, stopped] if model.status is Status.RUNNING else away)
     if model.status is Status.RUNNING:
-        return Outcome.UNSETTLED, f"stopped after {description.max_iterations} iterations before it settled"
+        return Outcome.UNSETTLED, stopped
     if off_plane(model.positions) < _FLAT * net.frame.unit:
         return Outcome.FLAT, Outcome.FLAT.sentence
     if not m.folded.all():
@@ -261,28 +261,13 @@ def _in_words(
     mean = float(m.stretch.mean())
     if mean > MAX_MEAN_STRETCH:
         return Outcome.STRETCHED, f"the paper is stretched by {mean:.2%} in the mean, more than paper can be"
-    shallow = [finding.sentence for finding in findings if finding.lack is Lack.ANGLE]
+    shallow = [finding.sentence for finding in findings if finding.lack in (Lack.ANGLE, Lack.DEPTH)]
     if shallow:
         return Outcome.SHALLOW, "; ".join(shallow)
-    driven = m.fold_angle[np.isin(m.crease, _with_own_angle(description, net), invert=True)]
-    driven = driven[np.isfinite(driven)]
-    median = float(np.median(driven)) if len(driven) else math.inf
-    if description.angle is not None and median < ANGLE_REACHED * description.angle:
-        return Outcome.SHALLOW, (
-            f"folded to {median:.0f}° in the median where {description.angle:g}° were asked: "
-            "the sheet allows no more without stretching"
-        )
     verification = verify(net, model.positions)
     if not verification.ok:
         return Outcome.UNCERTIFIED, f"{Outcome.UNCERTIFIED.sentence}: {verification.faults[0]}"
     return Outcome.FOLDED, Outcome.FOLDED.sentence
-
-
-def _with_own_angle(description: FoldDescription, net: PiecewiseDog) -> list[int]:
-    """Creases that the drive does not take to its whole angle."""
-    controls = [control for control in description.controls if isinstance(control, Amount | Angle)]
-    names = [control.crease for control in controls if control.crease is not None]
-    return [crease_index(net.crease_labels, name) for name in names]
 
 
 def _out_of_reach(handles: tuple[Handle, ...], net: PiecewiseDog, model: FoldModel, report: SqpReport) -> str:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from .arrays import FloatArray, IntArray, frozen_array
 from .constraints.orthogonal_geodesic import LinkAngles, StarAngles
-from .controls.agreement import check_agreement
+from .controls.agreement import check_agreement, with_reasons
 from .controls.condition_pull import FLAT, ConditionPull
 from .controls.control import Control, ControlPull
 from .controls.curve import Curve, CurvePull
@@ -50,6 +50,9 @@ _FIRST_LIFT = 0.5
 #: A sheet that nothing asks to be bent lies down from here, and from there half of the way at a time, at most so
 #: often; parts of its longer side.
 _NEARLY_FLAT, _FAR_FROM_FLAT, _MOST_STEPS_DOWN = 0.05, 0.4, 8
+#: In the end nothing stretches the paper: what pulls lets go until the mean stretch is this part of what paper may
+#: show, to no less than the second part of its strength at once, and at most so often.
+_CALM, _LEAST_HELD, _LETTINGS = 0.97, 0.25, 8
 #: Folded anew, all creases are first folded to this angle, degrees: of 45, 60 and 75 the best for what was stuck.
 _OPENING_ANGLE = 60.0
 
@@ -117,7 +120,7 @@ class FoldModel:
         self._told_anew = True  # whether the problem may not hold the pulls' present terms
         self._shape: dict[str, IntArray] = {}  # stencils of the pulls' terms in the problem
         self._merits: list[float] = []
-        self._steps_down = 0
+        self._steps_down, self._lettings = 0, 0
         # Where the paper came to rest before it held harder, and how stiff the fold condition was there.
         self._softer: tuple[FloatArray, tuple[FloatArray, int]] | None = None
         self._stage, self._polished, self._still = 0, 0, False
@@ -168,7 +171,7 @@ class FoldModel:
                  if side.crease not in sides]  # fmt: skip
         changed: list[str] = []
         try:
-            check_agreement(told, self.net.crease_labels)
+            check_agreement(told, self.net)
             for kind in KINDS:
                 name = kind.control.kind
                 mine = tuple(entry for entry in told if entry[1].kind == name)
@@ -194,7 +197,8 @@ class FoldModel:
     @property
     def findings(self) -> tuple[Finding, ...]:
         """What the controls ask for and the present shape lacks."""
-        return tuple(finding for pull in self._pulls() for finding in pull.findings(self._state.x))
+        found = [finding for pull in self._pulls() for finding in pull.findings(self._state.x)]
+        return with_reasons(found, self._controls, len(self._handles) > 0, self.net)
 
     @property
     def flow_progress(self) -> dict[int, float]:
@@ -298,7 +302,7 @@ class FoldModel:
     def _wake(self) -> None:
         self.status = Status.RUNNING
         self._merits, self._stage, self._polished, self._still = [], 0, 0, False
-        self._steps_down, self._softer = 0, None
+        self._steps_down, self._lettings, self._softer = 0, 0, None
         self._way.start_anew()
         for pull in self._pulls():
             pull.wake()
@@ -344,6 +348,10 @@ class FoldModel:
     def _move_targets(self, problem: Problem) -> bool:
         """Bring the targets of this iteration a step nearer; whether they are still on their way."""
         pulls = self._pulls()
+        turning = frozenset().union(*(pull.turning(self._state.x) for pull in pulls))
+        for pull in pulls:
+            if pull.make_way(turning, self._state.x):
+                self._replace(problem, pull)
         if not any(pull.on_way() for pull in pulls):
             self._release(problem)
             return False
@@ -456,14 +464,26 @@ class FoldModel:
             self._state = at_rest(softer)
             self._condition.hold(held)
             undone = [self._condition, self._paper]
-        elif not undone and self._handles.let_go(x):
-            undone = [self._handles]
+        undone = undone or self._let_go(x)
         for pull in undone:
             self._replace(problem, pull)
         if undone:
             self._still, self._polished = False, 0
         else:
             self.status = Status.SETTLED
+
+    def _let_go(self, x: FloatArray) -> list[Pull]:
+        """Let everything in space pull softer when the paper is stretched for it more than paper can be.
+
+        What cannot be reached without stretching is out of reach.
+        """
+        mean = mean_stretch(self.net, x)
+        if mean <= MAX_MEAN_STRETCH or self._lettings >= _LETTINGS:
+            return []
+        self._lettings += 1
+        # Where the paper is held taut, it is stretched about as much as it is pulled.
+        part = max(_CALM * MAX_MEAN_STRETCH / mean, _LEAST_HELD)
+        return [pull for pull in self._pulls() if pull.let_go(part)]
 
     def _missed(self, x: FloatArray) -> bool:
         """Whether the fold counts as failed: a point is unfolded, a handle off its target, the paper stretched."""

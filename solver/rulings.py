@@ -1,4 +1,4 @@
-"""Rulings and the Gauss image of a folded net: the straight lines of the bent paper, and where it is plane.
+"""Rulings of a folded net: the straight lines of the bent paper, and where it is plane.
 
 Along a ruling the normal does not turn. So the direction of a ruling at a point of the flat sheet is the one
 along which the quads' normals change least, and a whole ruling is the straight line through its patch along
@@ -20,6 +20,8 @@ from scipy.spatial import cKDTree
 from shapely import Polygon
 
 from .arrays import BoolArray, FloatArray, IntArray, frozen_array
+from .gauss_image import quad_normals
+from .net.paper_share import paper_areas, paper_shares
 from .net.piecewise_dog import PiecewiseDog
 
 #: Without a spacing, so many rulings lie beside each other along the sheet's longer side.
@@ -80,23 +82,11 @@ class Rulings:
         """(R,2,3) the same lines on the sheet where the net's vertices are at positions (V,3)."""
         return _placed(self.vertices, self.weights, positions)
 
-
-@dataclass(frozen=True, eq=False)
-class GaussImage:
-    """The normals of the quads as points of the unit sphere.
-
-    normals (Q,3) towards the sheet's front; pairs (A,2) quads that share an edge; patch (Q,) of each quad
-    """
-
-    normals: FloatArray
-    pairs: IntArray
-    patch: IntArray
-
-
-def gauss_image(net: PiecewiseDog, positions: ArrayLike) -> GaussImage:
-    """Unit normals of all quads of positions (V,3), with their adjacency. Raises ValueError for another shape."""
-    x = frozen_array(positions, np.float64, (len(net.rest), 3), "positions")
-    return GaussImage(_normals(net.quads, x), _quad_pairs(net), net.quad_patch)
+    def summary(self, net: PiecewiseDog) -> dict[str, int | float]:
+        """How many there are of each kind, and the part of the sheet that is plane."""
+        counts: dict[str, int | float] = {kind.name.lower(): int((self.kind == kind).sum()) for kind in RulingKind}
+        areas = paper_areas(net)
+        return counts | {"plane_part": round(float(areas[self.plane].sum() / areas.sum()), 6)}
 
 
 def rulings(net: PiecewiseDog, positions: ArrayLike, spacing: float | None = None) -> Rulings:
@@ -110,7 +100,7 @@ def rulings(net: PiecewiseDog, positions: ArrayLike, spacing: float | None = Non
     if not spacing > 0:
         raise ValueError("the spacing of rulings must be positive")
     field = _field(net, spacing)
-    at_quads = field.at_quads(_normals(net.quads, x))
+    at_quads = field.at_quads(quad_normals(net.quads, x))
     turning = field.at_seeds(at_quads)
     flat, patches = [], []
     for patch in field.patches:
@@ -134,28 +124,9 @@ def rulings(net: PiecewiseDog, positions: ArrayLike, spacing: float | None = Non
 # --- how the normals turn --------------------------------------------------------------------------------
 
 
-def _normals(quads: IntArray, x: FloatArray) -> FloatArray:
-    """(Q,3) unit normals: the cross product of the diagonals is second order at a quad's centre on any grid."""
-    normal = np.cross(x[quads[:, 2]] - x[quads[:, 0]], x[quads[:, 3]] - x[quads[:, 1]])
-    return normal / np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)[:, None]
-
-
 def _bend(turning: FloatArray) -> FloatArray:
     """(N,) curvature of turnings (N,2,2)."""
     return np.sqrt(np.trace(turning, axis1=-2, axis2=-1))
-
-
-@lru_cache(maxsize=4)
-def _quad_pairs(net: PiecewiseDog) -> IntArray:
-    """(A,2) quads that share two vertices."""
-    count = len(net.quads)
-    rows = np.repeat(np.arange(count), 4)
-    incidence = csr_matrix((np.ones(4 * count), (rows, net.quads.ravel())), shape=(count, len(net.rest)))
-    shared = (incidence @ incidence.T).tocoo()
-    some = (shared.row < shared.col) & (shared.data >= 2)
-    pairs = np.column_stack([shared.row[some], shared.col[some]]).astype(np.int64)
-    pairs.setflags(write=False)
-    return pairs
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,14 +154,7 @@ class _Field:
 
 @lru_cache(maxsize=4)
 def _field(net: PiecewiseDog, spacing: float) -> _Field:
-    over, topology = net.overlay, net.topology
-    solid = topology.face_quad >= 0
-    area = np.bincount(topology.face_quad[solid], weights=over.area[solid], minlength=len(net.quads))
-    corners = net.flat[net.quads]
-    whole = (corners[:, 1, 0] - corners[:, 0, 0]) * (corners[:, 3, 1] - corners[:, 0, 1])
-    # The overlay's areas are those of before lengths became net units.
-    area *= net.sheet.area / over.area.sum()
-    part = np.clip(area / whole, _LEAST_WEIGHT, 1.0)
+    part = np.clip(paper_shares(net), _LEAST_WEIGHT, 1.0)
     centres = net.rest[net.quads].mean(axis=1)
     slope_x, slope_y = _slopes(net, centres, part)
     patches = []

@@ -10,6 +10,7 @@ from zlib import crc32
 
 from ...solver import Amount, Angle, Curve, CurvefoldError, Glue, Keep, Pair, Side, Weights
 from ...solver.controls.control import Control
+from ...solver.description import MOST_WEIGHT
 
 Point = tuple[float, float]
 Place = tuple[float, float, float]
@@ -196,7 +197,10 @@ def _side(entry: Any, drawn: str, driven: float | None) -> str:
 
 def weights_of(settings: Any) -> Weights:
     """The weights of the solver's terms."""
-    return Weights(**{entry.name: float(getattr(settings, entry.name)) for entry in fields(Weights)})
+    # A file of an earlier version may hold larger ones.
+    return Weights(
+        **{entry.name: min(float(getattr(settings, entry.name)), MOST_WEIGHT) for entry in fields(Weights)}
+    )
 
 
 def match_creases(settings: Any, drawn: Sequence[DrawnCrease]) -> None:

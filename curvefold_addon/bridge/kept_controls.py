@@ -7,18 +7,26 @@ from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any
 
+import bpy
+import numpy as np
+
 from ...solver import Amount, Angle, Curve, Glue, Keep, Pair, Side, Weights
 from ...solver.controls.control import Control, crease_index
+from ...solver.controls.space_curve import resampled
 from .controls import DrawnCrease
+
+#: So many straight pieces stand for a curve in space.
+_PIECES = 96
 
 
 def keep_controls(
-    settings: Any, controls: Sequence[Control], weights: Weights, drawn: Sequence[DrawnCrease], scale: float
+    paper: Any, controls: Sequence[Control], weights: Weights, drawn: Sequence[DrawnCrease], scale: float
 ) -> None:
-    """Says in the settings what the controls say. scale: the paper's units in one of the drawing's.
+    """Says in the paper object's settings what the controls say. scale: the paper's units in one of the drawing's.
 
-    Curves given by points have no settings and are left out.
+    Curves given by points become curve objects that ride on the paper.
     """
+    settings = paper.data.curvefold
     labels = [crease.label for crease in drawn]
     for entry in fields(Weights):
         setattr(settings.weights, entry.name, getattr(weights, entry.name))
@@ -28,7 +36,10 @@ def keep_controls(
         elif isinstance(control, Angle) and control.at is not None:
             _keep_angle(settings.angles.add(), control, len(settings.angles), scale)
         elif isinstance(control, Side | Amount | Angle | Curve) and control.crease is not None:
-            _keep_crease(settings.creases[crease_index(labels, control.crease)], control, scale)
+            crease = settings.creases[crease_index(labels, control.crease)]
+            _keep_crease(crease, control, scale)
+            if isinstance(control, Curve) and control.points is not None:
+                crease.flow, crease.curve = "OBJECT", _curve_object(paper, crease.name, control.points, scale)
 
 
 def _keep_crease(crease: Any, control: Side | Amount | Angle | Curve, scale: float) -> None:
@@ -38,11 +49,29 @@ def _keep_crease(crease: Any, control: Side | Amount | Angle | Curve, scale: flo
         crease.amount = 100.0 * control.part
     elif isinstance(control, Angle):
         crease.use_angle, crease.signed, crease.angle = True, control.signed, math.radians(control.degrees)
-    elif control.points is None:
+    else:
         crease.flow, crease.progress = "SHAPE", 100.0 * control.progress
         crease.flow_speed, crease.flow_strength = control.speed, control.strength
         crease.curvature_times = control.curvature_times
         crease.curvature_plus, crease.torsion_plus = control.curvature_plus / scale, control.torsion_plus / scale
+
+
+def _curve_object(paper: Any, name: str, points: Sequence[Sequence[float]], scale: float) -> Any:
+    """A new curve object, a child of the paper, along points (n,3) in the drawing's units."""
+    given = np.array(points) * scale
+    length = float(np.linalg.norm(np.diff(given, axis=0), axis=1).sum())
+    places = resampled(given, np.linspace(0.0, length, _PIECES + 1))
+    curve = bpy.data.curves.new(f"{name} Target", "CURVE")
+    curve.dimensions = "3D"
+    spline = curve.splines.new("POLY")
+    spline.points.add(len(places) - 1)
+    spline.points.foreach_set("co", np.column_stack([places, np.ones(len(places))]).ravel())
+    item = bpy.data.objects.new(curve.name, curve)
+    item.parent = paper
+    item.hide_render = True
+    for collection in paper.users_collection:
+        collection.objects.link(item)
+    return item
 
 
 def _keep_angle(angle: Any, control: Angle, number: int, scale: float) -> None:

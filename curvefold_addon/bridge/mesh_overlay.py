@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .drawn import Indices, Label, Lines, Surface
 from .mesh import CREASE, FLAT_UV, NO_CREASE
-from .overlay import FOLDED_FROM, Array, Indices, Label, Lines, Surface, line_colors, side_color, stretch_colors
+from .overlay import FOLDED_FROM, Array, line_colors, side_color, stretch_colors
 
 Integers = NDArray[np.int64]
 

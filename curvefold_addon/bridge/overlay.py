@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -29,11 +28,10 @@ from ...solver import (
     rulings,
 )
 from ...solver.controls.control import Control
+from .drawn import Color, Indices, Label, Lines, Pulls, Single, Surface, single
+from .gauss_ball import GaussBall, ball
 
 Array = NDArray[np.float64]
-Single = NDArray[np.float32]
-Indices = NDArray[np.int32]
-Color = tuple[float, float, float, float]
 Point = tuple[float, float]
 
 #: Display colours (sRGB). Red and blue are told apart by all eyes; dark: a line that is drawn but not folded.
@@ -63,41 +61,6 @@ REACHED = 0.05
 _NEAR = 1.5
 #: A crease with more points than this has its angle written at three places instead of one.
 _SHORT = 12
-
-
-@dataclass(frozen=True, eq=False)
-class Lines:
-    """points (2n,3) and colors (2n,4): n segments."""
-
-    points: Single
-    colors: Single
-
-
-@dataclass(frozen=True, eq=False)
-class Surface:
-    """points (R,3), colors (R,4), triangles (T,3)."""
-
-    points: Single
-    colors: Single
-    triangles: Indices
-
-
-@dataclass(frozen=True)
-class Label:
-    """A text at a place of the paper."""
-
-    place: tuple[float, float, float]
-    text: str
-    color: Color
-
-
-@dataclass(frozen=True, eq=False)
-class Pulls:
-    """lines to where points of the paper are drawn; points (H,3): all that are drawn; color of these marks."""
-
-    lines: Lines
-    points: Single
-    color: Color
 
 
 class PaperShape:
@@ -132,7 +95,7 @@ class PaperShape:
             surface = self.net.render_map
             sides = np.append(sides_found(self.measurement), 0)[_edge_points(self.net)]
             points = self.shown[surface.crease_edges].reshape(-1, 3)
-            self._done["creases"] = Lines(_single(points), line_colors(sides))
+            self._done["creases"] = Lines(single(points), line_colors(sides))
         lines: Lines = self._done["creases"]
         return lines
 
@@ -150,7 +113,7 @@ class PaperShape:
             total = np.bincount(edges, weights=self.measurement.stretch.repeat(2), minlength=count)
             mean = total / np.maximum(np.bincount(edges, minlength=count), 1)
             colors = stretch_colors(self.net.render_map.apply(mean))
-            self._done["stretch"] = Surface(_single(self.shown), colors, triangles)
+            self._done["stretch"] = Surface(single(self.shown), colors, triangles)
         surface: Surface = self._done["stretch"]
         return surface
 
@@ -160,9 +123,16 @@ class PaperShape:
             points = found.carried(self.positions).reshape(-1, 3)
             palette = np.array([RULING_COLORS[kind] for kind in sorted(RULING_COLORS)], dtype=np.float32)
             self._done["found"] = found
-            self._done["rulings"] = Lines(_single(points), palette[found.kind].repeat(2, axis=0))
+            self._done["rulings"] = Lines(single(points), palette[found.kind].repeat(2, axis=0))
         lines: Lines = self._done["rulings"]
         return lines
+
+    def gauss_ball(self) -> GaussBall:
+        """The Gauss image on a ball beside the paper."""
+        if "ball" not in self._done:
+            self._done["ball"] = ball(self.net, self.positions, self.shown)
+        made: GaussBall = self._done["ball"]
+        return made
 
     def pulls(self, handles: Iterable[Handle]) -> Pulls:
         """From each handle's point to its target, where that is not reached. Handles lie on the sheet."""
@@ -271,7 +241,7 @@ def stretch_colors(stretch: Array) -> Single:
     """(N,4) colours of unsigned relative stretches (N,)."""
     marks = np.array([mark for mark, _ in STRETCH_RAMP])
     stops = np.array([color for _, color in STRETCH_RAMP])
-    return _single(np.column_stack([np.interp(stretch, marks, stops[:, k]) for k in range(4)]))
+    return single(np.column_stack([np.interp(stretch, marks, stops[:, k]) for k in range(4)]))
 
 
 def shown_triangles(mesh: Any) -> Indices:
@@ -348,13 +318,9 @@ def _joined(control: Control) -> tuple[tuple[Point, Point], ...]:
 
 def _pulls(ends: Array, points: Array, color: Color) -> Pulls:
     colors = np.tile(np.array(color, dtype=np.float32), (len(ends), 1))
-    return Pulls(Lines(_single(ends), colors), _single(points), color)
+    return Pulls(Lines(single(ends), colors), single(points), color)
 
 
 @lru_cache(maxsize=256)
 def _located(net: PiecewiseDog, at: tuple[float, float]) -> tuple[NDArray[np.int64], Array]:
     return net.locate(at)
-
-
-def _single(values: Array) -> Single:
-    return np.ascontiguousarray(values, dtype=np.float32)

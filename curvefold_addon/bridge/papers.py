@@ -6,10 +6,12 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import bpy
+from mathutils import Matrix  # type: ignore[import-not-found]
 
 from ...solver import Crease, CreasePattern, Handle, Status
 from . import controls, hooks, state
 from . import mesh as surface
+from .curve_targets import target_points
 from .kept_controls import keep_controls
 from .session import Session, drawn_of
 
@@ -33,8 +35,9 @@ def show_positions(mesh: Any, session: Session) -> None:
     surface.write_positions(mesh, session.net.render_map.apply(session.positions))
 
 
-def keep(mesh: Any, result: FoldResult) -> None:
-    """Makes the mesh of a finished fold (``mesh.add_paper``) a live paper that rests in it."""
+def keep(paper: Any, result: FoldResult) -> None:
+    """Makes the object of a finished fold (``mesh.add_paper``) a live paper that rests in it."""
+    mesh = paper.data
     scale = surface.metres_per_unit(result.pattern.unit_mm)
     description = result.description
     settings = mesh.curvefold
@@ -60,19 +63,22 @@ def keep(mesh: Any, result: FoldResult) -> None:
     state.store(mesh, source, result.positions * scale)
     drawn = drawn_of(source)
     controls.match_creases(settings, drawn)
-    keep_controls(settings, description.controls, description.weights, drawn, scale)
+    keep_controls(paper, description.controls, description.weights, drawn, scale)
     if result.last.status is Status.SETTLED:
-        state.store_rest(mesh, _told(settings, source).numbers())
+        state.store_rest(mesh, _told(paper, source).numbers())
 
 
-def _told(settings: Any, source: state.Source) -> hooks.Inputs:
-    """What ``hooks.read`` says of a paper whose handles are all pins."""
+def _told(paper: Any, source: state.Source) -> hooks.Inputs:
+    """What ``hooks.read`` says of a paper whose handles are all pins and whose curves ride on it."""
+    settings = paper.data.curvefold
     handles = tuple(
         Handle(tuple(entry.at), tuple(entry.offset), tuple(entry.axes), entry.strength)
         for entry in settings.handles
     )
-    return hooks.with_controls(settings, settings, handles, drawn_of(source), _no_curve)
+    here = Matrix.Identity(4)
+    scene = paper.users_scene[0] if paper.users_scene else bpy.context.scene
 
+    def curve_points(item: Any) -> tuple[controls.Place, ...]:
+        return target_points(item, scene, lambda curve: here)
 
-def _no_curve(item: Any) -> tuple[controls.Place, ...]:
-    raise controls.CurveTargetError("no curve object")
+    return hooks.with_controls(settings, settings, handles, drawn_of(source), curve_points)

@@ -8,9 +8,12 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ...solver.controls.pull import Lack
 from ...solver.drive import MAX_MEAN_STRETCH
-from ...solver.fold import ANGLE_REACHED, fold_angle_quantiles
+from ...solver.fold import fold_angle_quantiles
 from ...solver.folding import REACHED
+from ...solver.laid_flat import off_plane
+from .controls import plain_name
 from .hooks import handle_label
 from .session import Session
 
@@ -104,25 +107,30 @@ def _standing(
     late = _late_handle(found, settings, units)
     if late:
         return "trouble", late
-    if np.ptp(found.positions[:, 2]) <= _FLAT * found.net.frame.unit:
+    if off_plane(found.positions) <= _FLAT * found.net.frame.unit:
         return "settled", "flat"
-    if found.findings:
-        return "trouble", found.findings[0]
-    unfolded = [crease.label for crease in creases if not crease.folded]
+    troubles = _troubles(found)
+    if troubles:
+        return "trouble", troubles[0]
+    unfolded = [plain_name(crease.label) for crease in creases if not crease.folded]
     if unfolded:
         more = f" and {len(unfolded) - 1} more" if len(unfolded) > 1 else ""
         return "trouble", f"{unfolded[0]}{more} not folded everywhere"
     mean = float(found.measurement.stretch.mean())
     if mean > MAX_MEAN_STRETCH:
         return "trouble", f"the paper is stretched by {mean:.1%} in the mean, more than paper can be"
-    if asked is not None and median < ANGLE_REACHED * asked:
-        return "settled", f"settled at {median:.0f}° of {asked:.0f}°: the sheet allows no more"
-    return "settled", "settled"
+    depth = [finding.sentence for finding in found.findings if finding.lack is Lack.DEPTH]
+    return "settled", depth[0] if depth else "settled"
+
+
+def _troubles(found: Session) -> list[str]:
+    """What was asked and cannot be had. How far the paper follows the slider is an answer, and no trouble."""
+    return [finding.sentence for finding in found.findings if finding.lack is not Lack.DEPTH]
 
 
 def _lacks(found: Session) -> tuple[str, ...]:
     faults = () if found.inputs is None else found.inputs.faults
-    return (*faults, *found.refused, *found.findings)
+    return (*faults, *found.refused, *_troubles(found))
 
 
 def _late_handle(found: Session, settings: Any, units: Any) -> str:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solver import Handle, HandleError, Measurement, PiecewiseDog, SqpReport, Status, build_net, measure
+from ...solver.controls.pull import Finding
 from ...solver.net.carry_over import carry_over, scaled
 from . import mesh as surface
 from . import state, worker
@@ -85,7 +86,7 @@ class Session:
     before       the rest from which the present motion started
     drawn        the creases as they are drawn
     refused      why controls do not act that do not fit the paper, sentences
-    findings     what was asked and not reached, sentences
+    findings     what was asked and not reached
     flows        the part of its way, 0 to 1, that each crease (from 0) with a curve has gone; empty when not known
     run          the name of the motion, in the .blend too; empty when it has none yet
     frame        the last frame of an animation that the paper has followed
@@ -106,7 +107,7 @@ class Session:
         self.inputs: Inputs | None = None
         self.report: SqpReport | None = None
         self.measurement = measure(net, positions)
-        self.findings: tuple[str, ...] = ()
+        self.findings: tuple[Finding, ...] = ()
         self.refused: tuple[str, ...] = ()
         self.flows: dict[int, float] = {}
         self.iterations = 0

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time
 from concurrent.futures import Future, ThreadPoolExecutor, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from threading import Event
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...solver import DescriptionError, FoldModel, Measurement, PiecewiseDog, SqpReport, Status, measure
+from ...solver.controls.pull import Finding
 from ...solver.controls.registry import control_label
 from .controls import in_users_words
 from .hooks import Inputs
@@ -55,7 +56,7 @@ class Step:
     report: SqpReport
     iterations: int
     measurement: Measurement | None
-    findings: tuple[str, ...]
+    findings: tuple[Finding, ...]
     refused: tuple[str, ...]
     seconds: float
     flows: dict[int, float]
@@ -192,11 +193,17 @@ class Worker:
             report,
             self._iterations,
             measure(self._net, model.positions) if measured else None,
-            tuple(in_users_words(f.sentence, self._net.crease_labels) for f in model.findings) if over else (),
+            _found(model) if over else (),
             self._refused,
             (now - begin) / max(1, report.iterations),
             model.flow_progress,
         )
+
+
+def _found(model: FoldModel) -> tuple[Finding, ...]:
+    """What was asked and not reached, with creases called by their names."""
+    labels = model.net.crease_labels
+    return tuple(replace(found, sentence=in_users_words(found.sentence, labels)) for found in model.findings)
 
 
 def _set_controls(model: FoldModel, inputs: Inputs) -> tuple[str, ...]:

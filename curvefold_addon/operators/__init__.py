@@ -6,6 +6,7 @@ from . import (
     add_sample,
     add_sheet,
     bake,
+    check_paper,
     crease_sides,
     draw_crease,
     flatten,
@@ -14,6 +15,7 @@ from . import (
     follow,
     hook_object,
     import_drawing,
+    lines_as_objects,
     make_crease,
     make_paper,
     pick_crease,
@@ -50,7 +52,9 @@ _MODULES = (
     flatten,
     fold_anew,
     settle,
+    check_paper,
     bake,
+    lines_as_objects,
     follow,
 )
 

@@ -13,14 +13,14 @@ from ..drawing_context import select_only
 
 
 class FoldDrawing(bpy.types.Operator):
-    """Fold the crease pattern in an SVG drawing and add the paper"""
+    """Fold the crease pattern in an SVG or FOLD file and add the paper"""
 
     bl_idname = "curvefold.fold_drawing"
     bl_label = "Fold Drawing"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
     filepath: StringProperty(subtype="FILE_PATH", options={"SKIP_SAVE"})
-    filter_glob: StringProperty(default="*.svg", options={"HIDDEN"})
+    filter_glob: StringProperty(default="*.svg;*.fold", options={"HIDDEN"})
     resolution: IntProperty(
         name="Resolution",
         description="Quads along the longer side of the sheet",
@@ -55,14 +55,14 @@ class FoldDrawing(bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         paper = mesh.add_paper(result, context.collection, paper_material.paper_material())
-        papers.keep(paper.data, result)
+        papers.keep(paper, result)
         select_only(context, paper)
         self.report({"INFO"} if result.status.ok else {"WARNING"}, result.status.sentence)
         return {"FINISHED"}
 
 
 def _menu_entry(self: bpy.types.Menu, context: bpy.types.Context) -> None:
-    self.layout.operator(FoldDrawing.bl_idname, text="Crease Pattern, folded (.svg)")
+    self.layout.operator(FoldDrawing.bl_idname, text="Crease Pattern, folded (.svg, .fold)")
 
 
 def register() -> None:

@@ -52,6 +52,7 @@ class PaperContent:
     creases: arrays.Lines | None
     stretch: arrays.Surface | None
     rulings: arrays.Lines | None
+    gauss_image: arrays.GaussBall | None
     pulls: tuple[arrays.Pulls, ...]
     angles: tuple[arrays.Label, ...]
 
@@ -94,6 +95,7 @@ def of_paper(paper: bpy.types.Object, settings: bpy.types.PropertyGroup) -> Pape
         shape.creases() if settings.creases else None,
         shape.stretch(kept.triangles) if settings.stretch else None,
         _rulings(kept) if settings.rulings else None,
+        shape.gauss_ball() if settings.gauss_image else None,
         (shape.pulls(inputs.handles), shape.joints(inputs.controls), shape.asked_angles(inputs.controls))
         if settings.pulls and inputs is not None
         else (),
@@ -125,6 +127,7 @@ def _of_mesh(paper: bpy.types.Object, settings: bpy.types.PropertyGroup) -> Pape
         paper,
         shape.creases() if settings.creases else None,
         shape.stretch() if settings.stretch else None,
+        None,
         None,
         (),
         shape.angles() if settings.angles else (),

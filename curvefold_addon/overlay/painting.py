@@ -17,6 +17,7 @@ from . import content, trouble_marks
 
 #: Pixels at a resolution scale of 1.
 CREASE_WIDTH, RULING_WIDTH, PULL_WIDTH = 3.0, 1.2, 2.0
+BALL_WIDTH, IMAGE_WIDTH, PATCH_RADIUS = 1.0, 1.6, 5.0
 MARK_RADIUS, TROUBLE_RADIUS, TEXT_SIZE, TEXT_PADDING = 4.0, 8.0, 12.0, 4.0
 #: Lines on the paper are drawn this part of the distance nearer to the eye, so that they do not sink into it.
 LIFT = 0.003
@@ -107,6 +108,12 @@ def _draw_paper(context: bpy.types.Context, drawn: content.PaperContent) -> None
             if drawn.creases is not None:
                 gpu.state.depth_test_set("GREATER")
                 _draw_lines(context, (uid, "behind"), drawn.creases, CREASE_WIDTH, BEHIND)
+            if drawn.gauss_image is not None:
+                gpu.state.depth_test_set("LESS_EQUAL")
+                with gpu.matrix.push_pop():
+                    gpu.matrix.multiply_matrix(_ball_matrix(context.region_data, drawn))
+                    _draw_lines(context, (uid, "ball"), drawn.gauss_image.circles, BALL_WIDTH)
+                    _draw_lines(context, (uid, "image"), drawn.gauss_image.image, IMAGE_WIDTH)
             gpu.state.depth_test_set("NONE")
             for k, pulls in enumerate(drawn.pulls):
                 _draw_lines(context, (uid, f"pulls {k}"), pulls.lines, PULL_WIDTH)
@@ -121,6 +128,14 @@ def _lifted(view: bpy.types.RegionView3D) -> Matrix:
     if view.is_perspective:
         return Matrix.Diagonal((1 - LIFT, 1 - LIFT, 1 - LIFT, 1.0)) @ view.view_matrix
     return Matrix.Translation((0.0, 0.0, LIFT * view.view_distance)) @ view.view_matrix
+
+
+def _ball_matrix(view: bpy.types.RegionView3D, drawn: content.PaperContent) -> Matrix:
+    """From the unit ball to the paper's coordinates: left of the paper, from wherever it is looked at."""
+    # The sidebar is at the right.
+    left = drawn.paper.matrix_world.to_3x3().inverted_safe() @ (view.view_rotation @ Vector((-1.0, 0.0, 0.0)))
+    place = drawn.gauss_image.beside(tuple(left))
+    return Matrix.LocRotScale(place.centre, None, (place.radius,) * 3)
 
 
 def _draw_lines(
@@ -182,6 +197,9 @@ def _draw_on_screen(context: bpy.types.Context) -> None:
 
 def _draw_marks(context: bpy.types.Context, drawn: content.PaperContent) -> None:
     matrix = drawn.paper.matrix_world
+    for color, points in () if drawn.gauss_image is None else drawn.gauss_image.marks:
+        places = [_on_screen(context, matrix @ Vector(point)) for point in points]
+        _draw_diamonds(context, places, PATCH_RADIUS, color)
     for pulls in drawn.pulls:
         places = [_on_screen(context, matrix @ Vector(point)) for point in pulls.points]
         _draw_diamonds(context, places, MARK_RADIUS, pulls.color)

@@ -84,7 +84,7 @@ class AnglePull(ControlPull):
         # Places last: a point's own angle counts more than that of its crease.
         for label, control in sorted(controls, key=lambda entry: entry[1].at is not None):
             try:
-                mine = self._chosen(control)
+                mine = asked_points(self._net, self._points, control)
             except DescriptionError as error:
                 raise DescriptionError(error.message, element=label, place=error.where.place) from None
             again = self._alone[mine] if control.at is not None else np.isfinite(self._asked[mine])
@@ -117,7 +117,7 @@ class AnglePull(ControlPull):
         return terms
 
     def asks(self, x: FloatArray) -> bool:
-        return bool((np.nan_to_num(self._asked) != 0).any())
+        return self._weight > 0 and bool((np.nan_to_num(self._asked) != 0).any())
 
     def sides(self) -> Mapping[int, int]:
         crease = self._net.crease_points.crease[self._points]
@@ -193,30 +193,11 @@ class AnglePull(ControlPull):
                 Finding(
                     Lack.ANGLE,
                     f"{self._net.crease_labels[k]} came to {present[worst]:.0f}° at ({where[0]:.4g}, "
-                    f"{where[1]:.4g}) where {self._asked[worst]:g}° were asked: the sheet allows no more "
-                    "without stretching",
+                    f"{where[1]:.4g}) where {self._asked[worst]:g}° were asked",
+                    int(k),
                 )
             )
         return result
-
-    def _chosen(self, control: Angle) -> IntArray:
-        """Which of the driven points a control is about."""
-        labels = self._net.crease_labels
-        crease = self._net.crease_points.crease[self._points]
-        of_crease = np.arange(len(self._points))
-        if control.crease is not None:
-            k = crease_index(labels, control.crease)
-            of_crease = np.flatnonzero(crease == k)
-            if len(of_crease) == 0:
-                raise DescriptionError(f"{labels[k]} has no point where the net is fine enough to hold an angle")
-        if control.at is None:
-            return of_crease
-        place = self._net.frame.to_net(np.array([control.at]))[0]
-        distance = np.hypot(*(self._net.crease_points.position[self._points[of_crease]] - place).T)
-        nearest = int(np.argmin(distance)) if len(distance) else -1
-        if nearest < 0 or distance[nearest] > _NEAR:
-            raise DescriptionError("there is no crease near this point", place=tuple(control.at))
-        return of_crease[nearest : nearest + 1]
 
     def _measured(self, x: FloatArray) -> FloatArray:
         """(n,) degrees at the driven points, signed where a signed angle is asked; NaN where none has a meaning."""
@@ -230,3 +211,26 @@ class AnglePull(ControlPull):
     def _errors(self, x: FloatArray) -> FloatArray:
         """(n,) asked minus measured, 0 where nothing is asked or can be measured."""
         return np.nan_to_num(self._asked - self._measured(x))
+
+
+def asked_points(net: PiecewiseDog, points: IntArray, control: Angle) -> IntArray:
+    """Which of the crease points (n,) a control is about, as indices into them.
+
+    Raises DescriptionError when there is no such crease, or none near the place.
+    """
+    labels = net.crease_labels
+    crease = net.crease_points.crease[points]
+    of_crease = np.arange(len(points))
+    if control.crease is not None:
+        k = crease_index(labels, control.crease)
+        of_crease = np.flatnonzero(crease == k)
+        if len(of_crease) == 0:
+            raise DescriptionError(f"{labels[k]} has no point where the net is fine enough to hold an angle")
+    if control.at is None:
+        return of_crease
+    place = net.frame.to_net(np.array([control.at]))[0]
+    distance = np.hypot(*(net.crease_points.position[points[of_crease]] - place).T)
+    nearest = int(np.argmin(distance)) if len(distance) else -1
+    if nearest < 0 or distance[nearest] > _NEAR:
+        raise DescriptionError("there is no crease near this point", place=tuple(control.at))
+    return of_crease[nearest : nearest + 1]

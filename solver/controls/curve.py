@@ -116,6 +116,8 @@ class _Flow:
     end: CurveShape
     start_places: FloatArray
     end_places: FloatArray | None  # (n,3) where the curve lies in the end, None: anywhere
+    crease: int
+    turn: float  # sign of the flat crease's first turn
     part: float = 0.0
 
     def shape(self, part: float) -> CurveShape:
@@ -142,6 +144,12 @@ class _Flow:
             bend = np.abs(shape.curvature) - np.abs(present.curvature)
             misses.append(float(bend @ bend + ((shape.torsion - present.torsion) ** 2).sum()))
         return float(parts[int(np.argmin(misses))])
+
+    def go_on_from(self, places: FloatArray) -> None:
+        """Take the way up again where its curve is most like the present one, whose points lie at places (n,3)."""
+        self.part = min(self.nearest_part(measure_curve(places, self.turn)), self.control.progress)
+        if self.end_places is not None and self.part < 1.0:
+            self.start_places = (places - self.part * self.end_places) / (1.0 - self.part)
 
     def leads_away(self) -> bool:
         """Whether the end is another shape or place than the start."""
@@ -171,6 +179,7 @@ class CurvePull(ControlPull):
         self._flows: list[_Flow] = []
         self._targets: list[FloatArray] = []
         self._harder, self._times, self._laid = 1.0, 0, 0
+        self._waiting: frozenset[int] = frozenset()  # creases that another control takes through flat
 
     def set(self, controls: Sequence[tuple[str, Any]], x: FloatArray) -> None:
         before = {flow.control.shape_key(): flow for flow in self._flows}
@@ -182,7 +191,7 @@ class CurvePull(ControlPull):
                 flows.append(old)
             else:
                 flows.append(self._flow(label, control, x))
-        creases = [crease_index(self._net.crease_labels, flow.control.crease) for flow in flows]
+        creases = [flow.crease for flow in flows]
         for k, flow in enumerate(flows):
             if creases[k] in creases[:k]:
                 raise DescriptionError("is about the same crease as an earlier one", element=flow.label)
@@ -196,21 +205,23 @@ class CurvePull(ControlPull):
         rows = np.concatenate([flow.points for flow in self._flows])
         stencil = np.hstack([crease.left_vertices[rows], crease.right_vertices[rows]])
         coefficients = 0.5 * np.hstack([crease.left_weights[rows], crease.right_weights[rows]])
-        strength = np.concatenate([np.full(len(f.points), f.control.strength) for f in self._flows])
+        strength = np.concatenate(
+            [np.full(len(f.points), f.control.strength if self._pulls(f) else 0.0) for f in self._flows]
+        )
         weight = self._weight * self._harder * strength
         return [LinearTerm("curves", stencil, coefficients, np.vstack(self._targets), weight)]
 
     def asks(self, x: FloatArray) -> bool:
-        return any(flow.control.progress > 0 and flow.leads_away() for flow in self._flows)
+        return self._weight > 0 and any(flow.control.progress > 0 and flow.leads_away() for flow in self._flows)
 
     def on_way(self) -> bool:
-        return any(flow.part != flow.control.progress for flow in self._flows)
+        return any(flow.part != flow.control.progress for flow in self._flows if self._pulls(flow))
 
     def move(self, x: FloatArray, pace: float) -> bool:
         moved = False
         for k, flow in enumerate(self._flows):
             away = flow.control.progress - flow.part
-            if away:
+            if away and self._pulls(flow):
                 rate = pace * flow.control.speed * _TURN_RATE / max(flow.most_turn(), _TURN_RATE)
                 flow.part = (
                     flow.control.progress if abs(away) <= rate else flow.part + float(np.clip(away, -rate, rate))
@@ -219,8 +230,24 @@ class CurvePull(ControlPull):
                 self._targets[k] = self._places(flow, x)
         return moved
 
+    def make_way(self, creases: frozenset[int], x: FloatArray) -> bool:
+        """A crease has the flat one's curvature on its way through flat. It flows on from where it comes out."""
+        waiting = creases & {flow.crease for flow in self._flows}
+        if waiting == self._waiting:
+            return False
+        for k, flow in enumerate(self._flows):
+            if flow.crease in self._waiting - waiting:
+                present = self._present(flow.points, x)
+                flow.go_on_from(present)
+                self._targets[k] = self._places(flow, x)
+        self._waiting = waiting
+        return True
+
+    def _pulls(self, flow: _Flow) -> bool:
+        return flow.crease not in self._waiting
+
     def settle(self, x: FloatArray) -> bool:
-        if not self._flows:
+        if not any(map(self._pulls, self._flows)):
             return False
         # A curve that may lie anywhere goes along with the paper.
         targets = [self._places(flow, x) for flow in self._flows]
@@ -238,32 +265,41 @@ class CurvePull(ControlPull):
         self._harder, self._times = self._harder * _STIFFER, self._times + 1
         return True
 
+    def let_go(self, part: float) -> bool:
+        self._harder, self._times = self._harder * part, _STIFFENINGS
+        return bool(self._flows)
+
     def wake(self) -> bool:
         changed = self._times > 0
         self._harder, self._times, self._laid = 1.0, 0, 0
         return changed
 
     def mark(self) -> object:
-        return [flow.part for flow in self._flows]
+        return [(flow.part, target) for flow, target in zip(self._flows, self._targets, strict=True)]
 
     def go_back(self, mark: object) -> None:
         if isinstance(mark, list) and len(mark) == len(self._flows):
-            for flow, part in zip(self._flows, mark, strict=True):
+            for flow, (part, _) in zip(self._flows, mark, strict=True):
                 flow.part = part
+            self._targets = [target for _, target in mark]
 
     def findings(self, x: FloatArray) -> list[Finding]:
         result = []
         for flow, miss in zip(self._flows, self._misses(x), strict=True):
-            if miss > _REACHED:
-                name = self._net.crease_labels[crease_index(self._net.crease_labels, flow.control.crease)]
+            name = self._net.crease_labels[flow.crease]
+            if abs(flow.control.progress - flow.part) > 1e-9:
+                gone = flow.part / flow.control.progress if flow.control.progress else 0.0
+                sentence = f"{name} came {gone:.0%} of the way to the curve that it was given"
+                result.append(Finding(Lack.REACH, sentence, flow.crease))
+            elif miss > _REACHED:
                 away = miss * self._net.frame.unit
-                result.append(Finding(Lack.REACH, f"{name} stays {away:.3g} from the curve that it was given"))
+                sentence = f"{name} stays {away:.3g} from the curve that it was given"
+                result.append(Finding(Lack.REACH, sentence, flow.crease))
         return result
 
     def progress(self) -> dict[int, float]:
         """The part of its way, 0 to 1, that each crease with a curve has gone by now."""
-        labels = self._net.crease_labels
-        return {crease_index(labels, flow.control.crease): flow.part for flow in self._flows}
+        return {flow.crease: flow.part for flow in self._flows}
 
     def _misses(self, x: FloatArray) -> list[float]:
         result = []
@@ -328,7 +364,7 @@ class CurvePull(ControlPull):
                 element=label,
                 place=tuple(place.tolist()),
             )
-        flow = _Flow(control, label, points, arc, bare, start, end, present, end_places)
+        flow = _Flow(control, label, points, arc, bare, start, end, present, end_places, index, turn)
         if control.from_flat:
             flow.start_places = flat
             flow.part = flow.nearest_part(now)

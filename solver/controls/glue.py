@@ -94,6 +94,8 @@ class GluePull(ControlPull):
                     f"the borders to be glued are {first.length * unit:.4g} and {second.length * unit:.4g} long",
                     element=label,
                 )
+            if first.intersection(second).length > _ON_BORDER:
+                raise DescriptionError("the borders to be glued overlap", element=label)
             count = max(2, round(first.length) + 1)
             spacing = first.length / (count - 1)
             places = [_spread(line, count) for line in (first, second)]
@@ -134,7 +136,7 @@ class GluePull(ControlPull):
         return terms
 
     def asks(self, x: FloatArray) -> bool:
-        return bool(np.abs(self._gaps(x)).max(initial=0.0) > 1e-9)
+        return self._weight > 0 and bool(np.abs(self._gaps(x)).max(initial=0.0) > 1e-9)
 
     def on_way(self) -> bool:
         return self._open > 0.0 or (self._bent < 1.0 and len(self._across) > 0)
@@ -161,6 +163,10 @@ class GluePull(ControlPull):
             return False
         self._harder, self._times = self._harder * _STIFFER, self._times + 1
         return True
+
+    def let_go(self, part: float) -> bool:
+        self._harder, self._times = self._harder * part, _STIFFENINGS
+        return len(self._vertices) > 0
 
     def mark(self) -> object:
         return self._gap, self._open, self._bent

@@ -31,9 +31,6 @@ _MISSED, _NEARER, _STIFFER_IF_MISSED, _NEARLY_STRETCHED, _STIFFENINGS_IF_MISSED 
 #: Handles that are near enough let go a little of a paper that they stretch too far: so much, while nearer than
 #: this, net units, and from a mean stretch that no other remedy would lower.
 _SOFTER, _ROOM, _FAR_STRETCHED = 1.25, 0.28, 0.005
-#: In the end no handle stretches the paper: they let go until its mean is this part of what paper may show, by no
-#: more than the second part at once, and at most so often.
-_CALM, _MOST_LET_GO, _LETTINGS = 0.97, 0.25, 8
 #: Handles nearer than this to each other hold one point, net units.
 _SAME_POINT = 1e-6
 
@@ -50,7 +47,7 @@ class HandlePull(Pull):
         self._strengths = np.zeros(0)
         self._targets = np.zeros((0, 3))  # where the handles are drawn to in the end, net units
         self._paths = np.zeros((0, 3))  # where they are drawn to now
-        self._harder, self._times, self._lettings = 1.0, 0, 0
+        self._harder, self._times = 1.0, 0
 
     def __len__(self) -> int:
         return len(self.handles)
@@ -123,7 +120,7 @@ class HandlePull(Pull):
     def settle(self, x: FloatArray) -> bool:
         """Pull harder when handles stay off their targets though the paper is far from stretched, softer when they
         are near and it is stretched too far."""
-        if not len(self.handles) or self._times >= _STIFFENINGS_IF_MISSED or self._lettings:
+        if not len(self.handles) or self._times >= _STIFFENINGS_IF_MISSED:
             return False
         gap, mean = float(self.gaps(x).max()), mean_stretch(self._net, x)
         if gap > _CLOSE and mean <= 0.5 * MEAN_BUDGET and self._times < _STIFFENINGS:
@@ -137,22 +134,13 @@ class HandlePull(Pull):
         self._times += 1
         return True
 
-    def let_go(self, x: FloatArray) -> bool:
-        """Pull softer, for good, where the paper is stretched more than paper can be; whether anything was done.
-
-        What cannot be reached without stretching is out of reach.
-        """
-        mean = mean_stretch(self._net, x)
-        if not len(self.handles) or mean <= MAX_MEAN_STRETCH or self._lettings >= _LETTINGS:
-            return False
-        # Where handles hold the paper taut, it is stretched about as much as they pull.
-        self._harder *= max(_CALM * MAX_MEAN_STRETCH / mean, _MOST_LET_GO)
-        self._lettings += 1
-        return True
+    def let_go(self, part: float) -> bool:
+        self._harder, self._times = self._harder * part, _STIFFENINGS_IF_MISSED
+        return bool(self.handles)
 
     def wake(self) -> bool:
-        changed = self._times > 0 or self._lettings > 0
-        self._harder, self._times, self._lettings = 1.0, 0, 0
+        changed = self._times > 0
+        self._harder, self._times = 1.0, 0
         return changed
 
     def mark(self) -> object:

@@ -12,13 +12,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..optimize.sqp import SqpState
+from .control import ControlPull
 from .pull import Pull
 
 #: Mean stretch below which a shape is a good place to come back to, over which it is strained, and torn. On the
 #: way no sample goes over 0.0062; a handle on every vertex of an exact state goes through 0.05.
 _GOOD, _STRAINED, _TORN = 0.004, 0.008, 0.1
 #: A strained shape goes on at this part of the pace; a torn one stays. After so many iterations that are strained,
-#: or torn, one after the other, the way leads nowhere.
+#: or torn, one after the other, the way leads nowhere. What controls lead does not either when it has found no good
+#: place in so many since its last step back: a flow that cannot arrive may be taut and not quite strained for long.
+#: Handles are not bound by that: they arrive through such shapes.
 _SLOWLY, _PATIENCE, _PATIENCE_TORN = 0.4, 120, 15
 #: A place is kept at most every so many iterations.
 _EVERY = 10
@@ -43,7 +46,7 @@ class Homotopy:
         self._pace, self._slowly = 1.0, False
         self.given_up, self.stepped_back = False, 0
         self._place: _Place | None = None
-        self._strained, self._torn, self._since = 0, 0, 0
+        self._strained, self._torn, self._since, self._astray = 0, 0, 0, 0
 
     def may_move(self, stretch: float, state: SqpState, pulls: Sequence[Pull]) -> bool:
         """Whether the targets may move on from a shape with this mean stretch; keeps good places."""
@@ -52,6 +55,8 @@ class Homotopy:
         self._slowly = stretch > _STRAINED
         self._strained = self._strained + 1 if stretch > _STRAINED else 0
         self._torn = self._torn + 1 if stretch > _TORN else 0
+        led = self.stepped_back > 0 and any(isinstance(pull, ControlPull) and pull.on_way() for pull in pulls)
+        self._astray = self._astray + 1 if led and stretch >= _GOOD else 0
         if self.lost or stretch > _TORN:
             return False
         self._since += 1
@@ -68,15 +73,16 @@ class Homotopy:
 
     @property
     def lost(self) -> bool:
-        """Whether the paper has been strained or torn for too long."""
-        return not self.given_up and (self._strained > _PATIENCE or self._torn > _PATIENCE_TORN)
+        """Whether the paper has been strained or torn, or taut after a step back, for too long."""
+        too_long = max(self._strained, self._astray) > _PATIENCE or self._torn > _PATIENCE_TORN
+        return not self.given_up and too_long
 
     def step_back(self, pulls: Sequence[Pull]) -> SqpState | None:
         """Bring the pulls back to the last good place and return the shape there; None when there is none.
 
         The pace falls; after some steps back the rest of the way is given up.
         """
-        self._strained, self._torn, self._since = 0, 0, 0
+        self._strained, self._torn, self._since, self._astray = 0, 0, 0, 0
         self._pace *= _SLOWER
         self.stepped_back += 1
         self.given_up = self.stepped_back >= _MOST_BACK or self._place is None

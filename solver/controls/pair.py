@@ -110,7 +110,7 @@ class PairPull(ControlPull):
         return terms
 
     def asks(self, x: FloatArray) -> bool:
-        return bool((np.abs(self._lengths(x) - self._end) > 1e-9).any())
+        return self._weight > 0 and bool((np.abs(self._lengths(x) - self._end) > 1e-9).any())
 
     def on_way(self) -> bool:
         return not np.array_equal(self._end, self._now)
@@ -135,6 +135,10 @@ class PairPull(ControlPull):
         self._harder, self._times = self._harder * _STIFFER, self._times + 1
         return True
 
+    def let_go(self, part: float) -> bool:
+        self._harder, self._times = self._harder * part, _STIFFENINGS
+        return bool(self._pairs)
+
     def wake(self) -> bool:
         changed = self._times > 0
         self._harder, self._times = 1.0, 0
@@ -155,7 +159,10 @@ class PairPull(ControlPull):
             pair = self._pairs[k]
             places = " and ".join(f"({p[0]:.4g}, {p[1]:.4g})" for p in (pair.first, pair.second))
             asked = f"{pair.distance:.4g} were asked" if self._apart[k] else "they were to meet"
-            sentence = f"the points {places} stay {lengths[k] * unit:.3g} apart where {asked}"
+            along = "" if all(pair.axes) else f" along {_listed(pair.axes)}"
+            if along:
+                asked = "they were to be level"
+            sentence = f"the points {places} stay {lengths[k] * unit:.3g} apart{along} where {asked}"
             result.append(Finding(Lack.REACH, sentence))
         return result
 
@@ -197,6 +204,10 @@ def located_pair(
     except HandleError as error:
         raise DescriptionError(error.message, element=label, place=error.where.place) from None
     return np.concatenate([va, vb]), np.concatenate([wa, -wb])
+
+
+def _listed(axes: Sequence[bool]) -> str:
+    return " and ".join(letter for letter, on in zip("XYZ", axes, strict=True) if on)
 
 
 def _unit(gap: FloatArray) -> FloatArray:

@@ -18,14 +18,20 @@ class Lack(Enum):
     REACH = "a target in space is not reached"
     SIDE = "a crease did not fold to its side"
     ANGLE = "an angle is not reached"
+    DEPTH = "the drive comes less far than it is set to"
 
 
 @dataclass(frozen=True)
 class Finding:
-    """What was asked and not reached, in one sentence."""
+    """What was asked and not reached, in one sentence.
+
+    held: the crease (from 0) that came less far than asked, of which the sentence does not yet say what holds it;
+    None where there is none
+    """
 
     lack: Lack
     sentence: str
+    held: int | None = None
 
 
 class Pull:
@@ -51,6 +57,14 @@ class Pull:
         """Which of ``driven_points`` (n,) the angle drive should let alone, None for none."""
         return None
 
+    def turning(self, x: FloatArray) -> frozenset[int]:
+        """Creases that it is taking through flat to their other side."""
+        return frozenset()
+
+    def make_way(self, creases: frozenset[int], x: FloatArray) -> bool:
+        """Let creases alone that others take through flat, and only these; whether any value has changed."""
+        return False
+
     def begin(self, x: FloatArray) -> None:
         """The shape was changed from outside (the first fold): paths start from it."""
 
@@ -64,6 +78,13 @@ class Pull:
 
     def settle(self, x: FloatArray) -> bool:
         """At rest in x: give way, or pull harder. Whether any value has changed."""
+        return False
+
+    def let_go(self, part: float) -> bool:
+        """The paper is stretched for it: pull with this part of the present strength, and no harder any more.
+
+        Whether any value has changed.
+        """
         return False
 
     def wake(self) -> bool:

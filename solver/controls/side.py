@@ -24,6 +24,8 @@ LEAST_ANGLE = 8.0
 _FLIP_RATE = 1.0
 #: A crease that rests on the wrong side is pulled harder, at most so often; then it is left to the paper.
 _STIFFER, _STIFFENINGS = 4.0, 2
+#: A crease comes from its other side when it is folded there by more than this, degrees.
+_CLEAR = 1.0
 
 WORDS = {"V": "valley", "M": "mountain"}
 SIGNS = {"V": 1, "M": -1}
@@ -58,6 +60,7 @@ class SidePull(ControlPull):
         self._side = np.zeros(count, dtype=np.int64)  # +1 valley, -1 mountain, 0 free
         self._now = np.zeros(count)  # signed angle asked for now in the side's own direction, degrees
         self._harder, self._times = np.ones(count), np.zeros(count, dtype=np.int64)
+        self._flipping = np.zeros(count, dtype=bool)  # on the way from the other side
 
     def set(self, controls: Sequence[tuple[str, Any]], x: FloatArray) -> None:
         side = np.zeros_like(self._side)
@@ -74,6 +77,14 @@ class SidePull(ControlPull):
         self._harder[new], self._times[new] = 1.0, 0
         present = self._present(x)
         self._now[new] = np.minimum(LEAST_ANGLE, side * present)[new]
+        self._flipping = np.where(new, self._now < -_CLEAR, self._flipping) & (side != 0)
+
+    def turning(self, x: FloatArray) -> frozenset[int]:
+        """Creases that come from the other side, until they are folded to theirs or are left to the paper."""
+        if self._flipping.any():
+            there = (self._now >= LEAST_ANGLE) & ~self._wrong(x)
+            self._flipping = self._flipping & ~there & (self._times <= _STIFFENINGS)
+        return frozenset(np.flatnonzero(self._flipping).tolist())
 
     def released(self) -> BoolArray:
         """Driven points (n,) of creases that are still on the way to their side: no drive should hold them."""
@@ -100,13 +111,14 @@ class SidePull(ControlPull):
         ]
 
     def asks(self, x: FloatArray) -> bool:
-        return bool((self._side != 0).any())
+        return self._weight > 0 and bool((self._side != 0).any())
 
     def sides(self) -> Mapping[int, int]:
         return {int(k): int(self._side[k]) for k in np.flatnonzero(self._side)}
 
     def begin(self, x: FloatArray) -> None:
         self._now = np.minimum(LEAST_ANGLE, self._side * self._present(x))
+        self._flipping[:] = False
 
     def on_way(self) -> bool:
         return bool(self._turning().any())

@@ -34,7 +34,7 @@ def obj_text(
     patches = None if groups is None else frozen_array(groups, np.int64, (len(faces),), "groups").tolist()
 
     lines = [f"# {line}" for line in comment.splitlines()]
-    lines.append(f"o {_word(name)}")
+    lines.append(f"o {word(name)}")
     # repr is the shortest text that gives the same number back.
     lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in positions.tolist()]
     lines += [f"vt {u!r} {v!r}" for u, v in texture.tolist()]
@@ -55,6 +55,6 @@ def check_faces(faces: Sequence[Sequence[int]], count: int) -> None:
             raise ValueError(f"face {index} is not a face of {count} vertices: {list(face)}")
 
 
-def _word(name: str) -> str:
+def word(name: str) -> str:
     """OBJ names end at the first blank."""
     return "_".join(name.split()) or "curvefold"

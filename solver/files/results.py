@@ -1,4 +1,4 @@
-"""The files of a finished fold: folded.obj, folded.fold, report.json."""
+"""The files of a finished fold: folded.obj, folded.fold, report.json, and of its rulings where they are wanted."""
 
 from __future__ import annotations
 
@@ -14,14 +14,19 @@ from ..fold import FoldResult
 from .atomic import write_whole
 from .fold_format import fold_text
 from .obj import obj_text
+from .ruling_files import ruling_texts
 
 OBJ_NAME, FOLD_NAME, REPORT_NAME = "folded.obj", "folded.fold", "report.json"
 #: FOLD's frame units by millimetres a unit.
-_UNITS = {1.0: "mm", 10.0: "cm", 1000.0: "m", 25.4: "in", 0.001: "um"}
+_UNITS = {1.0: "mm", 10.0: "cm", 1000.0: "m", 25.4: "in", 25.4 / 72: "pt", 1e-3: "um", 1e-6: "nm"}
+#: Units that differ by less, relatively, are the same: a drawing's unit is a quotient of its sizes.
+_SAME_UNIT = 1e-9
 
 
-def write_results(result: FoldResult, folder: str | Path) -> None:
-    """Write the three files, each whole or not at all; the report comes last and so says that all are there.
+def write_results(result: FoldResult, folder: str | Path, with_rulings: bool = False) -> None:
+    """Write the files, each whole or not at all; the report comes last and so says that all are there.
+
+    with_rulings: also rulings.obj, rulings.svg and gauss_image.obj, with a summary in the report.
 
     Raises CurvefoldError when the folder cannot be made or a file not be written.
     """
@@ -30,6 +35,7 @@ def write_results(result: FoldResult, folder: str | Path) -> None:
     vertices = surface.apply(result.positions)
     faces = surface.faces()
     name = result.pattern.name or "folded"
+    report = result.report()
     texts = {
         OBJ_NAME: obj_text(
             vertices,
@@ -46,17 +52,25 @@ def write_results(result: FoldResult, folder: str | Path) -> None:
             surface.crease_edges,
             surface.crease_edge_crease,
             crease_edge_angles(result),
-            _UNITS.get(result.pattern.unit_mm or 0.0, "unit"),
+            _unit(result.pattern.unit_mm),
             name,
         ),
-        REPORT_NAME: json.dumps(result.report(), indent=1, allow_nan=False) + "\n",
     }
+    if with_rulings:
+        more, report["rulings"] = ruling_texts(result)
+        texts |= more
+    texts[REPORT_NAME] = json.dumps(report, indent=1, allow_nan=False) + "\n"
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise CurvefoldError(f"the folder cannot be made ({error.strerror})", file=str(folder)) from None
     for file, text in texts.items():
         write_whole(folder / file, text)
+
+
+def _unit(unit_mm: float | None) -> str:
+    close = (name for mm, name in _UNITS.items() if unit_mm and abs(unit_mm / mm - 1.0) < _SAME_UNIT)
+    return next(close, "unit")
 
 
 def crease_edge_angles(result: FoldResult) -> FloatArray:

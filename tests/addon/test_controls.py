@@ -335,7 +335,7 @@ def test_the_controls_of_a_finished_fold_are_settings_of_its_paper(extension, li
     description = solver.FoldDescription(resolution=12, angle=30.0, controls=told, weights=weights)
     result = solver.fold(solver.read_pattern(path), description)
     paper = extension("curvefold_addon.bridge.mesh").add_paper(result, bpy.context.collection, None)
-    extension("curvefold_addon.bridge.papers").keep(paper.data, result)
+    extension("curvefold_addon.bridge.papers").keep(paper, result)
     assert rests(live, paper)
     again = live.session(paper.data).inputs
     bottom, top = creases(paper)

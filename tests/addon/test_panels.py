@@ -239,6 +239,29 @@ def test_every_overlay_can_be_switched(panels, paper):
     assert layout.notes["properties"] == ["show"]
 
 
+def test_rulings_and_gauss_image_are_offered_as_objects_or_it_says_why_there_are_none(
+    panels, extension, wording, paper
+):
+    settings = bpy.context.scene.curvefold
+    offered = ["curvefold.rulings_as_object", "curvefold.gauss_image_as_object"]
+    assert drawn(panels.OverlaysPanel)["operators"] == offered
+    settings.gauss_image = True
+    assert said(drawn(panels.OverlaysPanel)) == ""
+    extension("curvefold_addon.live").forget()
+    assert said(drawn(panels.OverlaysPanel)) == wording.NO_RULINGS_ASLEEP
+    bpy.context.scene.frame_end = 2
+    bpy.ops.curvefold.bake()
+    assert said(drawn(panels.OverlaysPanel)) == wording.NO_RULINGS_BAKED
+    settings.gauss_image = False
+    settings.rulings = True
+    assert said(drawn(panels.OverlaysPanel)) == wording.NO_RULINGS_BAKED
+    settings.rulings = False
+    assert said(drawn(panels.OverlaysPanel)) == ""
+    paper.select_set(False)
+    bpy.context.view_layer.objects.active = bpy.data.objects[paper.data.curvefold.sheet.name]
+    assert drawn(panels.OverlaysPanel)["operators"] == []
+
+
 def test_a_bake_can_be_made_and_freed(panels, wording, paper):
     assert drawn(panels.AnimationPanel)["operators"] == ["curvefold.bake"]
     bpy.context.scene.frame_end = 2

@@ -13,7 +13,7 @@ def state(extension):
 @pytest.fixture
 def folded_paper(extension, folded):
     paper = extension("curvefold_addon.bridge.mesh").add_paper(folded, bpy.context.scene.collection, None)
-    extension("curvefold_addon.bridge.papers").keep(paper.data, folded)
+    extension("curvefold_addon.bridge.papers").keep(paper, folded)
     return paper
 
 
@@ -77,7 +77,7 @@ def test_handles_of_the_command_line_become_pins(extension, drawing, live):
     )
     result = solver.fold(pattern, solver.FoldDescription(resolution=12, angle=None, handles=handles))
     paper = extension("curvefold_addon.bridge.mesh").add_paper(result, bpy.context.scene.collection, None)
-    extension("curvefold_addon.bridge.papers").keep(paper.data, result)
+    extension("curvefold_addon.bridge.papers").keep(paper, result)
     settings = paper.data.curvefold
     assert settings.fold == 0.0
     assert [(handle.hook, handle.pinned) for handle in settings.handles] == [(None, True)] * 3

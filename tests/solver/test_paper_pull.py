@@ -21,9 +21,7 @@ def peaks(name: str) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize(("name", "bound"), [("lens_with", 0.004), ("vertex_valley", 0.006)])
-def test_peaks_of_stretch_and_gaps_are_shared_out(
-    monkeypatch: pytest.MonkeyPatch, name: str, bound: float
-) -> None:
+def test_peaks_of_stretch_and_gaps_are_shared_out(monkeypatch: pytest.MonkeyPatch, name: str, bound: float) -> None:
     stretch, gap = peaks(name)
     assert stretch < bound
     assert gap < 2e-4

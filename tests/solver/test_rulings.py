@@ -1,4 +1,4 @@
-"""Rulings and Gauss images of exact states: straight lines where paper has them, none where it is plane."""
+"""Rulings of exact states: straight lines where paper has them, none where it is plane."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 import shapely
 
 import solver
-from solver import RulingKind, gauss_image, rulings
+from solver import RulingKind, rulings
 from solver.rulings import _kinds
 
 
@@ -132,6 +132,7 @@ def test_a_flat_sheet_has_no_rulings(exact: ModuleType) -> None:
     found = rulings(net, flat_sheet(net))
     assert found.segments.shape == (0, 2, 3)
     assert found.plane.all()
+    assert found.summary(net) == {"cylindrical": 0, "conical": 0, "general": 0, "plane_part": 1.0}
 
 
 def half_bent(net: solver.PiecewiseDog, radius: float) -> np.ndarray:
@@ -155,6 +156,12 @@ def test_plane_and_bent_parts_are_told_apart() -> None:
     centre = net.rest[net.quads].mean(axis=1)[:, 0]
     assert found.plane[centre < -1.1 * cell].all()
     assert not found.plane[centre > 0].any()
+    assert found.summary(net) == {
+        "cylindrical": len(found.kind),
+        "conical": 0,
+        "general": 0,
+        "plane_part": pytest.approx(0.5, abs=1.1 * cell / 2),
+    }
 
 
 def test_kinds_of_lines_in_the_plane() -> None:
@@ -182,36 +189,9 @@ def test_rulings_move_with_the_paper(exact: ModuleType) -> None:
     assert there.segments == pytest.approx(here.segments @ q.T + [3.0, -1.0, 7.0], abs=1e-6)
 
 
-def test_gauss_image_of_a_cylinder_is_a_curve_and_of_a_flat_sheet_a_point(exact: ModuleType) -> None:
-    state = exact.sine(1.5)
-    net = solver.build_net(state.pattern(), 16)
-    image = gauss_image(net, state.positions(net))
-    assert np.linalg.norm(image.normals, axis=1) == pytest.approx(1.0)
-    for patch in (0, 1):
-        # Normals of a cylinder lie in a plane.
-        sizes = np.linalg.svd(image.normals[image.patch == patch], compute_uv=False)
-        assert sizes[2] < 1e-12 * sizes[0]
-        assert sizes[1] > 0.05 * sizes[0]
-    flat = gauss_image(net, flat_sheet(net)).normals
-    assert flat == pytest.approx(np.tile([0.0, 0.0, 1.0], (len(flat), 1)))
-
-
-def test_gauss_image_joins_quads_over_the_edges_of_one_patch(exact: ModuleType) -> None:
-    net = solver.build_net(exact.sine(1.5).pattern(), 16)
-    image = gauss_image(net, flat_sheet(net))
-    shared = [len(set(net.quads[a]) & set(net.quads[b])) for a, b in image.pairs]
-    assert set(shared) == {2}
-    assert (image.patch[image.pairs[:, 0]] == image.patch[image.pairs[:, 1]]).all()
-    edges = np.sort(net.quads[:, [[0, 1], [1, 2], [2, 3], [3, 0]]].reshape(-1, 2), axis=1)
-    _, uses = np.unique(edges, axis=0, return_counts=True)
-    assert len(image.pairs) == (uses == 2).sum()
-
-
 def test_what_is_no_shape_or_no_spacing_is_refused(exact: ModuleType) -> None:
     net = solver.build_net(exact.sine(1.5).pattern(), 8)
     with pytest.raises(ValueError, match="positions"):
         rulings(net, np.zeros((3, 3)))
     with pytest.raises(ValueError, match="spacing"):
         rulings(net, flat_sheet(net), 0.0)
-    with pytest.raises(ValueError, match="positions"):
-        gauss_image(net, np.zeros((3, 3)))

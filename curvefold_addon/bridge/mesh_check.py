@@ -1,0 +1,125 @@
+"""Whether a mesh is paper, as it is shown: its flat sheet is its UV map, and a paper's net is asked as well."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solver.sheet_mesh import SheetMesh
+from ...solver.verify import Fault, Verification, verify
+from ...solver.verify_mesh import verdict, verify_mesh
+from . import mesh as surface
+from . import mesh_overlay
+from .session import Session
+
+#: The object's axes are as long as each other, and square, within this.
+_EVEN = 1e-4
+#: Blender's own attributes of what is selected.
+_SELECTED = (".select_vert", ".select_edge", ".select_poly")
+
+Array = NDArray[np.float64]
+
+
+class CheckError(ValueError):
+    """A mesh cannot be checked; ``str()`` is one sentence."""
+
+
+@dataclass(frozen=True)
+class PaperCheck:
+    """What was found. sentence: for the user; vertex: of the mesh, where the first fault is, None when nowhere."""
+
+    ok: bool
+    sentence: str
+    vertex: int | None
+
+
+def check(item: Any, depsgraph: Any, session: Session | None) -> PaperCheck:
+    """Checks what an object shows; session: that of a paper, whose net is checked where the mesh shows it.
+
+    Modifiers that only move vertices count; where they make others the mesh is checked without them. Raises
+    CheckError when the mesh has no faces or no UV map.
+    """
+    mesh = item.data
+    layer = mesh.uv_layers.get(surface.FLAT_UV) or mesh.uv_layers.active
+    if not len(mesh.polygons):
+        raise CheckError(f"{item.name} has no faces")
+    if layer is None:
+        raise CheckError(f"{item.name} has no UV map, which has to be its flat sheet")
+    evaluated = item.evaluated_get(depsgraph)
+    positions, shown = _shown(evaluated, mesh)
+    axes = np.array(evaluated.matrix_world, dtype=np.float64)[:3, :3]
+    corners, starts, flat = _corners(mesh, layer)
+    found = verify_mesh(SheetMesh(positions @ axes.T, starts, corners, flat))
+    folds = ""
+    if session is not None and surface.shows(mesh, session.net.render_map.apply(session.positions)):
+        found, folds = _with_net(found, verify(session.net, session.positions))
+    sentence = f"{_begin(item, shown)} is {verdict(found)}{folds if found.ok else ''}"
+    if found.ok:
+        return PaperCheck(True, sentence, None)
+    if not _is_even(axes) and any(fault.check == "isometry" for fault in found.faults):
+        sentence += "; the object is scaled unevenly"
+    return PaperCheck(False, sentence, _vertex_at(found.faults[0], corners, flat))
+
+
+def select_vertex(mesh: Any, vertex: int) -> None:
+    """Nothing but one vertex is selected when Edit Mode begins."""
+    # Where an attribute is missing nothing is selected; Blender 5.0 crashes when edges are set one by one.
+    for name in _SELECTED:
+        attribute = mesh.attributes.get(name)
+        if attribute is not None:
+            mesh.attributes.remove(attribute)
+    mesh.vertices[vertex].select = True
+
+
+def _shown(evaluated: Any, mesh: Any) -> tuple[Array, bool]:
+    """(V,3) positions of the mesh's own vertices, and whether they are those that are shown."""
+    made = evaluated.to_mesh()
+    try:
+        if mesh_overlay.counts(made) == mesh_overlay.counts(mesh):
+            values = np.empty(3 * len(made.vertices), dtype=np.float32)
+            made.attributes["position"].data.foreach_get("vector", values)
+            return values.reshape(-1, 3).astype(np.float64), True
+    finally:
+        evaluated.to_mesh_clear()
+    return mesh_overlay.shown_positions(mesh), False
+
+
+def _corners(mesh: Any, layer: Any) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
+    """(L,) vertices of the corners, (F+1,) where faces begin among them, (L,2) corners on the flat sheet."""
+    count = len(mesh.loops)
+    corners = np.empty(count, dtype=np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    starts = np.empty(len(mesh.polygons), dtype=np.int32)
+    mesh.polygons.foreach_get("loop_start", starts)
+    flat = np.empty(2 * count, dtype=np.float32)
+    layer.uv.foreach_get("vector", flat)
+    return corners.astype(np.int64), np.append(starts, count).astype(np.int64), flat.reshape(-1, 2).astype(float)
+
+
+def _with_net(shown: Verification, net: Verification) -> tuple[Verification, str]:
+    """The faults of both, and what is to be said of a paper's folds: a crease that is not folded is paper too."""
+    faults = tuple(fault for fault in net.faults if fault.check != "sides")
+    part = net.figures.get("not_folded", 0.0)
+    folds = "" if part == 0.0 else "; none of its creases is folded" if part == 1.0 else f"; {part:.0%} not folded"
+    return Verification(shown.figures, (*shown.faults, *faults)), folds
+
+
+def _begin(item: Any, shown: bool) -> str:
+    if not any(modifier.show_viewport for modifier in item.modifiers):
+        return "This"
+    return "With its modifiers this" if shown else "Without its modifiers this"
+
+
+def _is_even(axes: Array) -> bool:
+    products = axes.T @ axes
+    size = float(np.trace(products)) / 3.0
+    return bool(np.abs(products - size * np.eye(3)).max() <= _EVEN * size)
+
+
+def _vertex_at(fault: Fault, corners: NDArray[np.int64], flat: Array) -> int | None:
+    if fault.place is None:
+        return None
+    return int(corners[np.argmin(np.linalg.norm(flat - np.array(fault.place), axis=1))])

@@ -1,0 +1,54 @@
+"""Rulings and the Gauss image of a paper as it is now, as objects to keep."""
+
+from typing import ClassVar
+
+import bpy
+
+from .. import line_materials, live
+from ..bridge import baking, line_objects
+from .on_paper import OnPaper
+
+
+class RulingsAsObject(OnPaper, bpy.types.Operator):
+    """Keep the rulings of the paper as it is now: a curve object, a line a ruling, one material for each kind"""
+
+    bl_idname = "curvefold.rulings_as_object"
+    bl_label = "Rulings as Object"
+    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+
+    def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
+        if baking.is_baked(paper.data):
+            return self.refuse("The paper is baked; free its bake to find its rulings")
+        session = live.make_session(paper)
+        made = line_objects.add_rulings(paper, session.net, session.positions, line_materials.of_rulings())
+        if made is None:
+            return self.refuse("The paper is plane, so it has no rulings")
+        self.report({"INFO"}, f"Made {made.name}, which moves with the paper and does not bend with it")
+        return {"FINISHED"}
+
+
+class GaussImageAsObject(OnPaper, bpy.types.Operator):
+    """Keep the Gauss image of the paper as it is now: a curve object beside it, one material for each patch"""
+
+    bl_idname = "curvefold.gauss_image_as_object"
+    bl_label = "Gauss Image as Object"
+    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+
+    def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
+        if baking.is_baked(paper.data):
+            return self.refuse("The paper is baked; free its bake to find its Gauss image")
+        session = live.make_session(paper)
+        materials = line_materials.of_gauss_images()
+        made = line_objects.add_gauss_image(paper, session.net, session.positions, materials)
+        self.report({"INFO"}, f"Made {made.name}")
+        return {"FINISHED"}
+
+
+def register() -> None:
+    bpy.utils.register_class(RulingsAsObject)
+    bpy.utils.register_class(GaussImageAsObject)
+
+
+def unregister() -> None:
+    bpy.utils.unregister_class(GaussImageAsObject)
+    bpy.utils.unregister_class(RulingsAsObject)
