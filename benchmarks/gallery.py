@@ -30,8 +30,10 @@ ROOT = Path(__file__).resolve().parents[1]
 #: Where drawings, descriptions and results of a run lie.
 WORK = ROOT / "out" / "gallery"
 PAGE, DATA, PICTURES = ROOT / "docs" / "gallery.md", ROOT / "docs" / "gallery.json", ROOT / "docs/pictures/gallery"
-#: The paper's own bounds (sections 6.1 and 7): mean and largest stretch (at a point handle), mean and largest gap.
-BARS = {"stretch_mean": 0.003, "stretch_max": 0.01, "continuity_mean": 2e-4, "continuity_max": 3.5e-3}
+#: The paper's own bounds (sections 6.1 and 7): mean stretch, the largest at a point handle and away from handles,
+#: mean and largest gap.
+BARS = {"stretch_mean": 0.003, "stretch_max": 0.01, "stretch_away": 0.004, "continuity_mean": 2e-4,
+        "continuity_max": 3.5e-3}  # fmt: skip
 #: Size of a Cycles picture, its samples, and the width of the flat drawing beside it.
 WIDTH, HEIGHT, SAMPLES, FLAT_WIDTH = 480, 360, 16, 360
 #: Rulings that are parallel, meet in a point, or do neither.
@@ -47,8 +49,9 @@ INTRODUCTION = """# Gallery
 The figures of Rabinovich, Hoffmann and Sorkine-Hornung, *Modeling Curved Folding with Freeform Deformations*
 (2019), folded from drawings of our own: patterns like the paper's, not its files. All of it is made by
 `python -m benchmarks.gallery --blender PYTHON --write`; the numbers are also in [gallery.json](gallery.json).
-Lengths are relative to the mean grid edge, angles in degrees. The paper's bounds are a mean stretch of 0.003,
-0.01 at a point handle, a mean gap of 2e-4 and a largest one of 3.5e-3; what misses one of them is **bold**.
+Lengths are relative to the mean grid edge, angles in degrees. The paper's bounds are a mean stretch of 0.003, a
+largest one of 0.01 at a point handle and of 0.004 away from handles (here: more than three grid edges from every
+handle and joined point), a mean gap of 2e-4 and a largest one of 3.5e-3; what misses one of them is **bold**.
 """
 
 
@@ -78,7 +81,8 @@ def main() -> int:
         known |= {row["name"]: row for row in rows}
         shown = [figure for figure in figures() if figure.name in known]
         write(shown, [known[figure.name] for figure in shown])
-    return 0 if all(row["folded"] == 1.0 for row, figure in zip(rows, chosen, strict=True) if figure.bars) else 1
+    barred = [row for row, figure in zip(rows, chosen, strict=True) if figure.bars]
+    return 0 if all(row["folded"] == 1.0 and not missed(row) for row in barred) else 1
 
 
 def fold_figure(figure: Figure, blender: str | None, resume: bool) -> dict[str, Any]:
@@ -92,7 +96,10 @@ def fold_figure(figure: Figure, blender: str | None, resume: bool) -> dict[str, 
         _run(figure, folder, ["fold", str(drawing), "--out", str(folder), "--description", str(told)], blender)
     report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
     row = {"figure": figure.figure, "name": figure.name}
-    row |= {name: report[name] for name in ("vertices", "iterations", "seconds", "stretch_mean", "stretch_max")}
+    row |= {
+        name: report[name]
+        for name in ("vertices", "iterations", "seconds", "stretch_mean", "stretch_max", "stretch_away")
+    }
     row |= {name: report[name] for name in ("continuity_mean", "continuity_max")}
     row |= {"dog_angle": report["dog_angle_max"], "dog_residual": report["dog_residual_max"]}
     row |= {"folded": report["folded"], "fold_angle": report["fold_angle"]}
@@ -137,7 +144,8 @@ def line(row: dict[str, Any]) -> str:
     low, median, high = row["fold_angle"]
     return (
         f"{row['figure']:>3} {row['name']:<24} {row['vertices']:>6} vertices {row['iterations']:>4} iterations "
-        f"{row['seconds']:>6.1f} s  stretch {row['stretch_mean']:.1e} {row['stretch_max']:.1e}  "
+        f"{row['seconds']:>6.1f} s  "
+        f"stretch {row['stretch_mean']:.1e} {row['stretch_max']:.1e} {row['stretch_away']:.1e}  "
         f"gap {row['continuity_mean']:.1e} {row['continuity_max']:.1e}  DOG {row['dog_residual']:.0e}  "
         f"{row['folded']:.1%}  {low:.0f}/{median:.0f}/{high:.0f}°  {row['found'][:20]}  {row['sentence']}"
     )
@@ -186,12 +194,13 @@ def write(chosen: Sequence[Figure], rows: Sequence[dict[str, Any]]) -> None:
 
 def table(mine: Sequence[tuple[Figure, dict[str, Any]]]) -> str:
     """A Markdown table of some rows."""
-    head = ("name", "vertices", "iterations", "seconds", "mean / max stretch", "mean / max gap", "DOG residual",
+    head = ("name", "vertices", "iterations", "seconds", "stretch mean / max / away",
+            "gap mean / max", "DOG residual",
             "folded", "fold angle 10 / 50 / 90 %", "sides", "weights")  # fmt: skip
     lines = [head, ("---", *("--:",) * 9, "---")]
     for figure, row in mine:
         stretch, gap = (
-            " / ".join(_bound(row, f"{kind}_{which}", figure.bars) for which in ("mean", "max"))
+            " / ".join(_bound(row, name, figure.bars) for name in BARS if name.startswith(kind))
             for kind in ("stretch", "continuity")
         )
         weights = ", ".join(f"{k.replace('_', ' ')} {v:g}" for k, v in row["weights"].items()) or "usual"
@@ -203,9 +212,14 @@ def table(mine: Sequence[tuple[Figure, dict[str, Any]]]) -> str:
     return "\n".join("| " + " | ".join(cells) + " |" for cells in lines) + "\n"
 
 
+def missed(row: dict[str, Any]) -> list[str]:
+    """The figures of a row that are beyond the paper's bounds."""
+    return [name for name, bound in BARS.items() if row[name] > bound]
+
+
 def _bound(row: dict[str, Any], name: str, held: bool) -> str:
     value = f"{row[name]:.1e}"
-    return f"**{value}**" if held and row[name] > BARS[name] else value
+    return f"**{value}**" if held and name in missed(row) else value
 
 
 def ruled(figure: Figure) -> Rulings:

@@ -147,15 +147,18 @@ def _annuli() -> tuple[Figure, ...]:
 
 def _one_drawing_two_surfaces() -> tuple[Figure, ...]:
     words = (
-        "one arc folded into two surfaces, by torsion to the {}, and the fold's rulings on the flat sheet "
+        "one arc folded into two surfaces, here {}, and the fold's rulings on the flat sheet "
         "(brown: cones, blue: cylinders, green: neither)"
     )
     return tuple(
         Figure(
-            "2", f"surface_{side}", words.format(side), _ONE,
-            _told(Curve(1, curvature_times=1.3, torsion_plus=torsion)), fast=side == "left", ruled=True,
+            "2", f"surface_{name}", words.format(how), _ONE,
+            _told(Curve(1, curvature_times=times, torsion_plus=torsion)), fast=name == "twisted", ruled=True,
         )
-        for side, torsion in (("left", 1.2), ("right", -1.2))
+        for name, how, times, torsion in (
+            ("twisted", "with 1.3 times its curvature and a torsion of 1.2", 1.3, 1.2),
+            ("plane", "with 1.7 times its curvature in a plane", 1.7, 0.0),
+        )
     )  # fmt: skip
 
 
@@ -168,7 +171,7 @@ def _with_and_without() -> tuple[Figure, ...]:
             result.append(
                 Figure(
                     "3", f"{name}_{'with' if condition else 'without'}", words, drawing,
-                    _told(handles=_pinch(0.06, 0.12), weights=Weights(fold_condition=1.0 if condition else 0.0)),
+                    _told(handles=_pinch(0.07, 0.12), weights=Weights(fold_condition=1.0 if condition else 0.0)),
                     fast=name == "arc", bars=condition,
                 )
             )  # fmt: skip

@@ -12,11 +12,12 @@ import numpy as np
 import shapely
 
 from .arrays import FloatArray
+from .controls.pair import Pair
 from .controls.pull import Finding, Lack
 from .description import FoldDescription, Handle
 from .drive import MAX_MEAN_STRETCH
 from .errors import CurvefoldError
-from .folding import REACHED, FoldModel, SqpReport, Status
+from .folding import OPENING_ANGLES, REACHED, FoldModel, SqpReport, Status
 from .laid_flat import off_plane
 from .measurement import Measurement, measure
 from .net.build import build_net
@@ -30,6 +31,9 @@ _REPORT_EVERY = 10
 _FLAT = 1e-6
 #: What creases are called that lie on a side, and how many of them a terminal is told.
 _SIDES, _MOST_SIDES = {"V": "valley", "M": "mountain", "U": "on no side"}, 12
+
+#: Edges farther than this from every handle and joined point are away from them, net units.
+_AWAY = 3.0
 
 Progress = Callable[[int, SqpReport], None]
 
@@ -127,6 +131,7 @@ class FoldResult:
             "seconds": round(self.seconds, 3),
             "stretch_mean": float(m.stretch.mean()),
             "stretch_max": float(m.stretch.max()),
+            "stretch_away": self._stretch_away(),
             "continuity_mean": float(m.continuity.mean()) if len(m.continuity) else 0.0,
             "continuity_max": float(m.continuity.max(initial=0.0)),
             "dog_residual_max": self.last.constraint,
@@ -140,6 +145,19 @@ class FoldResult:
             "findings": [finding.sentence for finding in self.findings],
             "notes": [*self.pattern.notes, *self.net.notes],
         }
+
+    def _stretch_away(self) -> float:
+        """The largest stretch of an edge that is not near a point that is held."""
+        net = self.net
+        held = [handle.at for handle in self.description.handles]
+        held += [
+            at for pair in self.description.controls if isinstance(pair, Pair) for at in (pair.first, pair.second)
+        ]
+        middle = net.flat[net.edges].mean(axis=1)
+        near = np.full(len(middle), np.inf)
+        for at in net.frame.to_net(np.array(held, dtype=float).reshape(-1, 2)):
+            near = np.minimum(near, np.hypot(*(middle - at).T))
+        return float(self.measurement.stretch[near > _AWAY].max(initial=0.0))
 
 
 def fold_angle_quantiles(m: Measurement) -> tuple[float, float, float]:
@@ -199,17 +217,22 @@ def fold(
 
 
 def come_to_rest(model: FoldModel, description: FoldDescription, progress: Progress | None = None) -> Rest:
-    """Advance a model that was told a description until it rests, and once more in another way if that failed.
+    """Advance a model that was told a description until it rests, and in other ways if that failed.
 
-    What the other way comes to is kept only if it is all that was asked.
+    What another way comes to is kept only if it is all that was asked.
     """
     rest = _rest(model, description, progress, 0)
     may_help = rest.status in _WORTH_ANOTHER_WAY and description.weights.fold_condition > 0
     if not (may_help and description.handles) or _too_far_apart(description.handles, model.net):
         return rest
-    model.fold_anew()
-    other = _rest(model, description, progress, rest.iterations)
-    return other if other.status.ok else replace(rest, iterations=other.iterations)
+    iterations = rest.iterations
+    for opening in OPENING_ANGLES:
+        model.fold_anew(opening)
+        other = _rest(model, description, progress, iterations)
+        if other.status.ok:
+            return other
+        iterations = other.iterations
+    return replace(rest, iterations=iterations)
 
 
 def _rest(model: FoldModel, description: FoldDescription, progress: Progress | None, before: int) -> Rest:

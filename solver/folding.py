@@ -16,6 +16,7 @@ from .controls.agreement import check_agreement, with_reasons
 from .controls.condition_pull import FLAT, ConditionPull
 from .controls.control import Control, ControlPull
 from .controls.curve import Curve, CurvePull
+from .controls.handle_pull import REACHED as REACHED
 from .controls.handle_pull import HandlePull
 from .controls.homotopy import Homotopy
 from .controls.paper_pull import PaperPull
@@ -43,18 +44,17 @@ _STILL_AGAIN_OVER = 6
 _STAGE_MOST = 60
 #: Polished: the DOG angles hold to this, or no better after so many iterations.
 _EXACT, _MAX_POLISH = 1e-9, 40
-#: A handle is reached within this distance, net units (method, section 4).
-REACHED = 0.3
 #: The offset lifts no vertex by more than this, net units.
 _FIRST_LIFT = 0.5
 #: A sheet that nothing asks to be bent lies down from here, and from there half of the way at a time, at most so
 #: often; parts of its longer side.
-_NEARLY_FLAT, _FAR_FROM_FLAT, _MOST_STEPS_DOWN = 0.05, 0.4, 8
+_NEARLY_FLAT, _FAR_FROM_FLAT, _MOST_STEPS_DOWN = 0.05, 0.6, 8
 #: In the end nothing stretches the paper: what pulls lets go until the mean stretch is this part of what paper may
 #: show, to no less than the second part of its strength at once, and at most so often.
-_CALM, _LEAST_HELD, _LETTINGS = 0.97, 0.25, 8
-#: Folded anew, all creases are first folded to this angle, degrees: of 45, 60 and 75 the best for what was stuck.
-_OPENING_ANGLE = 60.0
+_CALM, _LEAST_HELD, _LETTINGS = 0.97, 0.25, 16
+#: Folded anew, all creases are first folded to the first of these angles, degrees: of 45, 60 and 75 the best for
+#: what was stuck. What is stuck even then may get free from much deeper folds.
+OPENING_ANGLES = (60.0, 120.0)
 
 
 class Status(Enum):
@@ -222,16 +222,17 @@ class FoldModel:
         self._condition.unfolding = degrees == 0
         self._wake()
 
-    def fold_anew(self) -> None:
+    def fold_anew(self, opening: float = OPENING_ANGLES[0]) -> None:
         """Start from the flat sheet once more and go another way: all creases fold before anything pulls.
 
-        Which of several folds a paper takes is decided by its way, and the way of the handles may end stuck.
+        opening: to which angle, degrees. Which of several folds a paper takes is decided by its way, and the way of
+        the handles may end stuck.
         """
         flat = np.column_stack([self.net.flat, np.zeros(len(self.net.flat))])
         self._state = at_rest(flat)
         self._condition = ConditionPull(self.net, self.weights.fold_condition)
         self._opening = AngleDrive(self.net, self.weights.fold_angle)
-        self._opening.set(_OPENING_ANGLE, flat)
+        self._opening.set(opening, flat)
         self._wake()
 
     def again(self, positions: ArrayLike) -> FoldModel:

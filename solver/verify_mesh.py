@@ -23,7 +23,7 @@ from .verify import LEAST_AREA, MAX_MEAN_STRETCH, MAX_STRETCH, MOST_AREA, Fault,
 #: change by so much more in the mean than a net's.
 CHORDS = 0.002
 #: Angles around an inner vertex add up to the flat ones, degrees: in the mean over the sheet. The samples miss that
-#: by 0.7 at 24 quads and by 1.1 at 12; a sheet crumpled so finely that its lengths do not show it, by more.
+#: by 0.7 at 24 quads and by 1.1 at 12; a sheet crumpled so finely that its lengths do not show it, by 2.
 MAX_MEAN_DEFECT = 1.5
 #: Vertices at one place of the flat sheet are no farther apart than this, mean edges.
 MAX_CRACK = 2e-2
@@ -87,12 +87,12 @@ class _MeshCheck:
     def done(self) -> Verification:
         return Verification(self.figures, tuple(self.faults))
 
-    def fault(self, check: str, sentence: str, corner: int | None) -> None:
+    def fault(self, check: str, sentence: str, corner: int | None, at: str = "at") -> None:
         if corner is None:
             self.faults.append(Fault(check, sentence, None))
             return
         x, y = self.places[corner].tolist()
-        self.faults.append(Fault(check, f"{sentence}, at ({x:.6g}, {y:.6g})", (x, y)))
+        self.faults.append(Fault(check, f"{sentence}, {at} ({x:.6g}, {y:.6g})", (x, y)))
 
     # --- before anything can be measured ---------------------------------------------------------------
 
@@ -223,7 +223,7 @@ class _MeshCheck:
             sentence = (
                 f"angles around a vertex miss their flat sum by {mean:.2f}° in the mean, over {MAX_MEAN_DEFECT:g}°"
             )
-            self.fault("angles", f"{sentence}, and most", int(sheet.corner[worst]))
+            self.fault("angles", sentence, int(sheet.corner[worst]), "worst at")
 
 
 @dataclass(frozen=True, eq=False)
@@ -302,11 +302,6 @@ def _area_vectors(points: FloatArray, mesh: SheetMesh) -> FloatArray:
 def _upright(flat: FloatArray) -> FloatArray:
     """(L,3) points of the flat sheet (L,2), in space."""
     return np.column_stack([flat, np.zeros(len(flat))])
-
-
-def _unit(vectors: FloatArray) -> FloatArray:
-    """Of length one; those without a length stay."""
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=1), 1e-300)[:, None]
 
 
 def _corner_angles(points: FloatArray, mesh: SheetMesh) -> FloatArray:

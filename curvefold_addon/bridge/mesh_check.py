@@ -29,7 +29,7 @@ class CheckError(ValueError):
 
 @dataclass(frozen=True)
 class PaperCheck:
-    """What was found. sentence: for the user; vertex: of the mesh, where the first fault is, None when nowhere."""
+    """sentence: what was found, for the user; vertex: of the mesh, where it is wrong first, None if nowhere."""
 
     ok: bool
     sentence: str
@@ -61,7 +61,7 @@ def check(item: Any, depsgraph: Any, session: Session | None) -> PaperCheck:
         return PaperCheck(True, sentence, None)
     if not _is_even(axes) and any(fault.check == "isometry" for fault in found.faults):
         sentence += "; the object is scaled unevenly"
-    return PaperCheck(False, sentence, _vertex_at(found.faults[0], corners, flat))
+    return PaperCheck(False, sentence, _first_vertex(found.faults, corners, flat))
 
 
 def select_vertex(mesh: Any, vertex: int) -> None:
@@ -103,7 +103,8 @@ def _with_net(shown: Verification, net: Verification) -> tuple[Verification, str
     """The faults of both, and what is to be said of a paper's folds: a crease that is not folded is paper too."""
     faults = tuple(fault for fault in net.faults if fault.check != "sides")
     part = net.figures.get("not_folded", 0.0)
-    folds = "" if part == 0.0 else "; none of its creases is folded" if part == 1.0 else f"; {part:.0%} not folded"
+    some = "none of its creases is folded" if part == 1.0 else f"{part:.1%} of its crease points are not folded"
+    folds = f"; {some}" if part > 0.0 else ""
     return Verification(shown.figures, (*shown.faults, *faults)), folds
 
 
@@ -119,7 +120,7 @@ def _is_even(axes: Array) -> bool:
     return bool(np.abs(products - size * np.eye(3)).max() <= _EVEN * size)
 
 
-def _vertex_at(fault: Fault, corners: NDArray[np.int64], flat: Array) -> int | None:
-    if fault.place is None:
-        return None
-    return int(corners[np.argmin(np.linalg.norm(flat - np.array(fault.place), axis=1))])
+def _first_vertex(faults: tuple[Fault, ...], corners: NDArray[np.int64], flat: Array) -> int | None:
+    """Where the first fault is that is in one place."""
+    place = next((fault.place for fault in faults if fault.place is not None), None)
+    return None if place is None else int(corners[np.argmin(np.linalg.norm(flat - np.array(place), axis=1))])

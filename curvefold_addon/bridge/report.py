@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from ...solver.controls.pull import Lack
-from ...solver.drive import MAX_MEAN_STRETCH
+from ...solver.drive import ANGLE_REACHED, MAX_MEAN_STRETCH
 from ...solver.fold import fold_angle_quantiles
 from ...solver.folding import REACHED
 from ...solver.laid_flat import off_plane
@@ -120,7 +120,11 @@ def _standing(
     if mean > MAX_MEAN_STRETCH:
         return "trouble", f"the paper is stretched by {mean:.1%} in the mean, more than paper can be"
     depth = [finding.sentence for finding in found.findings if finding.lack is Lack.DEPTH]
-    return "settled", depth[0] if depth else "settled"
+    if depth:
+        return "settled", depth[0]
+    # What was found is not kept in a file: a paper that has not moved since it was opened shows how deep it is.
+    unmoved = found.report is None and asked is not None and median < ANGLE_REACHED * asked
+    return "settled", f"settled at {median:.0f}° of {asked:.0f}°" if unmoved else "settled"
 
 
 def _troubles(found: Session) -> list[str]:

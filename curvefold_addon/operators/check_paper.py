@@ -35,7 +35,7 @@ class CheckPaper(bpy.types.Operator):
         sentence = found.sentence
         if found.vertex is not None and item.data.is_editable:
             mesh_check.select_vertex(item.data, found.vertex)
-            sentence += " on the flat sheet; Edit Mode shows where"
+            sentence += "; Edit Mode shows where"
         self.report({"INFO"} if found.ok else {"WARNING"}, sentence)
         return {"FINISHED"}
 

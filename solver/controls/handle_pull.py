@@ -31,6 +31,10 @@ _MISSED, _NEARER, _STIFFER_IF_MISSED, _NEARLY_STRETCHED, _STIFFENINGS_IF_MISSED 
 #: Handles that are near enough let go a little of a paper that they stretch too far: so much, while nearer than
 #: this, net units, and from a mean stretch that no other remedy would lower.
 _SOFTER, _ROOM, _FAR_STRETCHED = 1.25, 0.28, 0.005
+#: A handle is reached within this distance, net units (method, section 4).
+REACHED = 0.3
+#: What is not reached may be pulled to this mean stretch: a little too far, and it lets go again.
+_LAST_STRETCH = 0.00297
 #: Handles nearer than this to each other hold one point, net units.
 _SAME_POINT = 1e-6
 
@@ -123,9 +127,10 @@ class HandlePull(Pull):
         if not len(self.handles) or self._times >= _STIFFENINGS_IF_MISSED:
             return False
         gap, mean = float(self.gaps(x).max()), mean_stretch(self._net, x)
+        bearable = _NEARLY_STRETCHED if gap <= REACHED else _LAST_STRETCH
         if gap > _CLOSE and mean <= 0.5 * MEAN_BUDGET and self._times < _STIFFENINGS:
             self._harder *= _STIFFER
-        elif gap > _MISSED and mean <= _NEARLY_STRETCHED:
+        elif gap > _MISSED and mean <= bearable:
             self._harder *= min(gap / _NEARER, _STIFFER_IF_MISSED)
         elif gap < _ROOM and MAX_MEAN_STRETCH < mean <= _FAR_STRETCHED:
             self._harder /= _SOFTER

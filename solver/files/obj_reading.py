@@ -115,7 +115,7 @@ def _index(word: str, count: int, number: int) -> int:
     except ValueError:
         value = 0
     index = value - 1 if value > 0 else count + value
-    if value == 0 or not 0 <= index < count:
+    if not 0 <= index < count:
         raise ReadError(
             f"a face names {word[:20]!r}, and there are {count} of these so far", element=f"line {number}"
         )

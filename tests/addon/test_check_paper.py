@@ -40,6 +40,7 @@ def said(extension, monkeypatch):
 
 
 def run(said):
+    """What one check found."""
     assert bpy.ops.curvefold.check_paper() == {"FINISHED"}
     return said[-1]
 
@@ -117,6 +118,10 @@ def test_the_net_is_asked_too(paper, live, module):
     session.positions[hidden[0]] += 0.05
     found = module.check(paper, graph, session)
     assert "This is not paper: " in found.sentence
+    # Where the mesh shows another shape, it is that shape alone that counts.
+    for vertex in paper.data.vertices:
+        vertex.co.x += 1.0
+    assert module.check(paper, bpy.context.evaluated_depsgraph_get(), session).ok
 
 
 def test_any_other_mesh_with_its_uv_map(paper, said):
@@ -154,7 +159,10 @@ def test_a_baked_paper_is_checked_at_the_frame_that_is_shown(paper, said):
 def test_modifiers_that_move_vertices_count_and_those_that_make_some_are_left_out(paper, said):
     wave = paper.modifiers.new("Cast", "CAST")
     wave.factor = 0.5
-    assert run(said).sentence.startswith("With its modifiers this is not paper: ")
+    found = run(said)
+    assert found.sentence.startswith("With its modifiers this is not paper: edges are stretched")
+    # That is so everywhere; a place is shown all the same.
+    assert selected(paper.data) == [found.vertex]
     paper.modifiers.clear()
     paper.modifiers.new("Solidify", "SOLIDIFY").thickness = 0.001
     assert run(said).sentence.startswith("Without its modifiers this is paper: ")
@@ -193,3 +201,12 @@ def test_a_handle_stands_for_its_paper_and_edit_mode_has_to_be_left(paper, said)
 def test_it_is_in_the_object_menu():
     drawn = bpy.types.VIEW3D_MT_object._dyn_ui_initialize()
     assert any(function.__module__.endswith("check_paper") for function in drawn)
+
+
+def test_on_the_command_line(extension, folded, tmp_path, capsys):
+    main = extension("curvefold_addon.cli").main
+    extension("solver").write_results(folded, tmp_path)
+    for name in ("folded.obj", "folded.fold"):
+        assert main(["verify", str(tmp_path / name)]) == 0
+        assert f"{name} is paper: " in capsys.readouterr().err
+    assert main(["verify", str(tmp_path / "report.json")]) == 2

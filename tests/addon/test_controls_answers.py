@@ -67,6 +67,19 @@ def test_how_deep_the_slider_leads_is_an_answer_and_no_trouble(made, live):
     assert live.report(paper.data).lacks == ()
 
 
+def test_a_paper_that_was_opened_says_how_deep_it_is(made, live, tmp_path):
+    paper = made('<circle id="Ring" cx="50" cy="50" r="30" fill="none" stroke="#f0f"/>')
+    paper.data.curvefold.angle, paper.data.curvefold.fold = np.radians(120.0), 100.0
+    live.settle(paper.data)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "deep.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "deep.blend"))
+    paper = next(o for o in bpy.data.objects if o.type == "MESH")
+    live.settle(paper.data)
+    report = live.report(paper.data)
+    assert report.state == "settled"
+    assert report.sentence == f"Settled at {report.fold_angle:.0f}° of 120°"
+
+
 def test_a_crease_that_is_to_stay_flat_is_as_deep_as_asked(made, live):
     paper = made(TWO)
     paper.data.curvefold.fold = 60.0

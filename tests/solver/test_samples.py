@@ -59,6 +59,9 @@ def test_sample_folds(name: str, way: str) -> None:
     assert fold_angle_quantiles(m)[1] > MIN_MEDIAN
     assert m.stretch.mean() < MAX_MEAN_STRETCH
     assert result.last.constraint < MAX_RESIDUAL
+    surface = result.net.render_map
+    shown = solver.SheetMesh.from_faces(surface.apply(result.positions), surface.faces(), surface.uv, scale=1.0)
+    assert solver.verify_mesh(shown).ok
     drawn = [crease.assignment for crease in result.pattern.creases]
     if set(drawn) == {"M", "V"}:  # the first crease is a valley in all of them, as it is in a free fold
         assert [m.side(k) for k in range(len(drawn))] == drawn
