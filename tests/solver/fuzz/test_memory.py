@@ -1,0 +1,54 @@
+"""Reading a file takes no more memory than a stated multiple of the file."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+#: Bytes of memory a byte of a file of a megabyte (docs/reliability.md); Python and its libraries come before.
+MULTIPLE = 80
+MEGABYTE = 1_000_000
+#: Reads the file named in the arguments, and prints by how many bytes its peak of memory grew.
+READ = """
+import resource, sys
+import solver
+from solver.description import read_handles
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+try:
+    if sys.argv[1].endswith(".json"):
+        read_handles(sys.argv[1])
+    else:
+        solver.build_net(solver.read_pattern(sys.argv[1]), 16)
+except solver.CurvefoldError:
+    pass
+print(1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before))
+"""
+BEGIN = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><rect width="9" height="9" stroke="#000"/>'
+
+
+def repeated(begin: str, middle: str, end: str) -> str:
+    return begin + middle * (MEGABYTE // len(middle)) + end
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        (
+            "path.svg",
+            repeated(f'{BEGIN}<path stroke="red" d="M 0 5', " L 1.2345 6.7891 L 8.1234 2.3456", '"/></svg>'),
+        ),
+        ("tags.svg", repeated(BEGIN, '<g><path stroke="red" d="M0 0 L1 1"/></g>', "</svg>")),
+        ("points.fold", repeated('{"vertices_coords":[[0,0]', ",[1,2]", '],"edges_vertices":[[0,1]]}')),
+        ("handles.json", repeated('[{"at":[0,0],"target":[1,1,1]}', ',{"at":[0,0],"target":[1,1,1]}', "]")),
+    ],
+)
+@pytest.mark.skipif(sys.platform != "linux", reason="peaks of memory are counted in kilobytes on Linux only")
+def test_reading_takes_no_more_memory_than_a_multiple_of_the_file(tmp_path: Path, name: str, text: str) -> None:
+    path = tmp_path / name
+    path.write_text(text, encoding="utf-8")
+    done = subprocess.run([sys.executable, "-c", READ, str(path)], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert 0 < int(done.stdout) < MULTIPLE * MEGABYTE
