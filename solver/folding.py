@@ -90,6 +90,15 @@ class SqpReport:
     seconds: dict[str, float]
 
 
+@dataclass(frozen=True, eq=False)
+class _Softer:
+    """The shape (V,3) in which the paper rested before it held harder, and how stiff condition and handles were."""
+
+    x: FloatArray
+    condition: tuple[FloatArray, int]
+    handles: tuple[float, int]
+
+
 class FoldModel:
     """A piecewise DOG on its way to a folded shape.
 
@@ -121,8 +130,7 @@ class FoldModel:
         self._shape: dict[str, IntArray] = {}  # stencils of the pulls' terms in the problem
         self._merits: list[float] = []
         self._steps_down, self._lettings = 0, 0
-        # Where the paper came to rest before it held harder, and how stiff the fold condition was there.
-        self._softer: tuple[FloatArray, tuple[FloatArray, int]] | None = None
+        self._softer: _Softer | None = None
         self._stage, self._polished, self._still = 0, 0, False
         self._opening: AngleDrive | None = None  # at work while a sheet that is folded anew opens
         self._way = Homotopy()
@@ -445,7 +453,7 @@ class FoldModel:
         if not changed and self._paper.settle(x):
             changed.append(self._paper)
             if self._softer is None:
-                self._softer = x, self._condition.held()
+                self._softer = _Softer(x, self._condition.held(), self._handles.held())
         for pull in changed:
             self._replace(problem, pull)
         return bool(changed)
@@ -461,10 +469,10 @@ class FoldModel:
         # Polishing may undo a faint fold or stretch an edge: back to settling, with what gave way held harder.
         undone: list[Pull] = [pull for pull in (self._condition, self._paper) if pull.undone(x)]
         if not undone and self._softer is not None and self._missed(x) and self._paper.give_way():
-            softer, held = self._softer
-            self._state = at_rest(softer)
-            self._condition.hold(held)
-            undone = [self._condition, self._paper]
+            self._state = at_rest(self._softer.x)
+            self._condition.hold(self._softer.condition)
+            self._handles.hold(self._softer.handles)
+            undone = [self._condition, self._paper, self._handles]
         undone = undone or self._let_go(x)
         for pull in undone:
             self._replace(problem, pull)

@@ -143,6 +143,14 @@ class HandlePull(Pull):
         self._harder, self._times = self._harder * part, _STIFFENINGS_IF_MISSED
         return bool(self.handles)
 
+    def held(self) -> tuple[float, int]:
+        """How hard the handles pull, and how often they pulled harder, for ``hold``."""
+        return self._harder, self._times
+
+    def hold(self, held: tuple[float, int]) -> None:
+        """Back to what ``held`` told."""
+        self._harder, self._times = held
+
     def wake(self) -> bool:
         changed = self._times > 0
         self._harder, self._times = 1.0, 0

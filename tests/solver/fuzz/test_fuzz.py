@@ -90,10 +90,10 @@ def test_what_breeding_has_found_is_refused(data: Any) -> None:
     assert len(str(refused.value).splitlines()) == 1
 
 
-@pytest.mark.parametrize("weight", [10**40, 1])
-def test_weights_and_strengths_are_floats(weight: int) -> None:
+@pytest.mark.parametrize(("strength", "weight"), [(10**40, 10**10), (1, 1)])
+def test_weights_and_strengths_are_floats(strength: int, weight: int) -> None:
     """Whole numbers beyond 64 bits make arrays of objects."""
-    handle = solver.Handle((0, 0), (0, 0, 0), strength=weight)
+    handle = solver.Handle((0, 0), (0, 0, 0), strength=strength)
     assert type(handle.strength) is type(solver.Weights(bending=weight).bending) is float
 
 
