@@ -11,7 +11,7 @@ import pytest
 import solver
 from benchmarks.gallery_figures import Figure, figures
 
-#: Quads along the longer side, where 16 are too few: they miss the curve of ``flow`` by 0.084 edges of 0.08 allowed.
+#: Quads along the longer side, where 16 are too few: they miss the curve of ``flow`` by 0.084 edges, 0.08 may be.
 COARSE = {"flow": 20}
 FAST = [figure for figure in figures() if figure.fast]
 
