@@ -22,7 +22,7 @@ from .pull import Finding, Lack, Term
 _NEAR = 1.5
 #: At rest the asked value is corrected by the measured error, which is of second order in the grid where the
 #: term's own is of first: at most so often, at most so far, and only errors larger than this, degrees.
-_CORRECTIONS, _MOST_CORRECTED, _CLOSE = 6, 30.0, 0.3
+_CORRECTIONS, _MOST_CORRECTED, _CLOSE = 12, 30.0, 0.3
 #: Angles that are missed although the paper is far from stretched pull harder, at most so often.
 _STIFFER, _STIFFENINGS = 3.0, 4
 #: Over the stretch budget all angles pull softer, at most so often.
