@@ -117,3 +117,11 @@ def paper(sheet: object) -> object:
 @pytest.fixture
 def live(extension: Callable[[str], ModuleType]) -> ModuleType:
     return extension("curvefold_addon.live")
+
+
+@pytest.fixture
+def content(extension):
+    """What is drawn over papers, forgotten afterwards."""
+    module = extension("curvefold_addon.overlay.content")
+    yield module
+    module.forget()

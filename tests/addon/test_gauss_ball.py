@@ -11,13 +11,6 @@ def arrays(extension):
 
 
 @pytest.fixture
-def content(extension):
-    module = extension("curvefold_addon.overlay.content")
-    yield module
-    module.forget()
-
-
-@pytest.fixture
 def settings():
     settings = bpy.context.scene.curvefold
     settings.gauss_image = True

@@ -15,13 +15,6 @@ def arrays(extension):
 
 
 @pytest.fixture
-def content(extension):
-    module = extension("curvefold_addon.overlay.content")
-    yield module
-    module.forget()
-
-
-@pytest.fixture
 def shape(arrays, folded):
     return arrays.PaperShape(folded.net, folded.positions)
 
