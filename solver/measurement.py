@@ -16,6 +16,9 @@ from .net.piecewise_dog import PiecewiseDog
 FLAT_TILT = 1e-6
 #: A crease is a mountain or valley when its points on one side outnumber the others by this part of all.
 _ONE_SIDED = 0.8
+#: A crease folded by less than this in the median is flat, degrees: a sheet that was laid down keeps traces of a
+#: side, which nobody sees and nobody wants locked.
+_FLAT = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,9 +56,12 @@ class Measurement:
         return tuple(int(c) for c in np.unique(self.crease[~self.folded]))
 
     def side(self, crease: int) -> str:
-        """FOLD letter of what a crease became: V, M, or U where it changes sides or has no angle."""
-        sides = self.fold_sign[(self.crease == crease) & np.isfinite(self.fold_angle)]
+        """FOLD letter of what a crease became: V, M, or U where it is flat, changes sides or has no angle."""
+        known = (self.crease == crease) & np.isfinite(self.fold_angle)
+        sides = self.fold_sign[known]
         if len(sides) == 0 or abs(sides.sum()) < _ONE_SIDED * len(sides):
+            return "U"
+        if np.median(self.fold_angle[known]) < _FLAT:
             return "U"
         return "V" if sides.sum() > 0 else "M"
 

@@ -185,7 +185,7 @@ def test_a_flat_sheet_has_no_angle_and_is_not_folded(exact: ModuleType) -> None:
 
 
 @pytest.mark.parametrize("turn", [0.0, 90.0, 33.0], ids=lambda turn: f"turned by {turn:g} degrees")
-@pytest.mark.parametrize("degrees", [10.0, 90.0, 170.0])
+@pytest.mark.parametrize("degrees", [0.05, 10.0, 90.0, 170.0])
 def test_a_straight_fold_is_measured_exactly_and_a_valley_is_positive(degrees: float, turn: float) -> None:
     half = np.radians(degrees / 2)
     c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
@@ -212,6 +212,7 @@ def test_a_straight_fold_is_measured_exactly_and_a_valley_is_positive(degrees: f
         assert known.sum() >= 7
         assert m.fold_angle[known] == pytest.approx(degrees, abs=1e-5)
         assert set(m.fold_sign[known]) == {sign}, side
+        assert m.side(0) == (side[0].upper() if degrees > 1 else "U"), "too flat to have a side"
         assert m.stretch.max() < 1e-12
 
 
