@@ -117,6 +117,13 @@ class AngleDrive(Pull):
         if isinstance(mark, np.ndarray) and self.angle is not None:
             self._now = mark
 
+    def shortfall(self, x: FloatArray) -> float:
+        if self.angle is None or self._weight == 0:
+            return 0.0
+        free = np.unique(self._crease[~self._released])
+        targets = np.maximum(self._targets()[free], 1e-9)
+        return float(np.maximum(1.0 - present_angles(self._net, x)[free] / targets, 0.0).sum())
+
     def findings(self, x: FloatArray) -> list[Finding]:
         """The first of the creases that stay well below what the drive asks of them, and how many more do."""
         if self.angle is None or self._weight == 0:

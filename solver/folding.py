@@ -31,19 +31,23 @@ from .laid_flat import laid_flat, off_plane
 from .net.piecewise_dog import PiecewiseDog
 from .objectives.bending import bending
 from .optimize.assembly import Problem
-from .optimize.sqp import StepReport, at_rest, projection_step, sqp_step
+from .optimize.sqp import StepReport, at_rest, projection_step, sqp_step, tangent_step
 from .optimize.term import ResidualTerm
+from .resting import RestingShape, RestMerit, best
+from .verify import verify
 
 #: Softness of the constraints, 1/energy: while targets move, then in stages at rest, and while polishing.
 EPS_STAGES, EPS_POLISHING = (1e-2, 1e-3, 1e-5), 1e-8
 #: Still: over this many iterations the merit falls by less than this part of itself (or by _NOTHING).
 _STILL_OVER, _STILL_PART, _NOTHING = 10, 2e-3, 1e-7
-#: Once the paper has come to rest and only holds harder, little moves, and fewer iterations show that it is still.
-_STILL_AGAIN_OVER = 6
 #: A stage ends after so many iterations even if it is not still: the rest is creep (method, section 3).
 _STAGE_MOST = 60
 #: Polished: the DOG angles hold to this, or no better after so many iterations.
 _EXACT, _MAX_POLISH = 1e-9, 40
+#: Rounds in which peaks are shared out, at most, and after how many that brought no better shape they end.
+_MOST_SHARINGS, _NO_BETTER = 16, 4
+#: A shape lacks as much as the first one up to this part more, and this much: grid edges, parts of angles.
+_AS_SHORT, _A_LITTLE = 1.03, 0.03
 #: The offset lifts no vertex by more than this, net units.
 _FIRST_LIFT = 0.5
 #: A sheet that nothing asks to be bent lies down from here, and from there half of the way at a time, at most so
@@ -90,15 +94,6 @@ class SqpReport:
     seconds: dict[str, float]
 
 
-@dataclass(frozen=True, eq=False)
-class _Softer:
-    """The shape (V,3) in which the paper rested before it held harder, and how stiff condition and handles were."""
-
-    x: FloatArray
-    condition: tuple[FloatArray, int]
-    handles: tuple[float, int]
-
-
 class FoldModel:
     """A piecewise DOG on its way to a folded shape.
 
@@ -130,8 +125,9 @@ class FoldModel:
         self._shape: dict[str, IntArray] = {}  # stencils of the pulls' terms in the problem
         self._merits: list[float] = []
         self._steps_down, self._lettings = 0, 0
-        self._softer: _Softer | None = None
         self._stage, self._polished, self._still = 0, 0, False
+        self._rests: list[RestingShape] = []  # where it could rest, once still and exact
+        self._trial, self._lacking, self._sharings = x, 0.0, 0
         self._opening: AngleDrive | None = None  # at work while a sheet that is folded anew opens
         self._way = Homotopy()
         self._controls: tuple[Control, ...] = ()
@@ -267,14 +263,17 @@ class FoldModel:
                 problem = self._prepared()
             try:
                 if self._still:
-                    self._polish(problem)
+                    self._finish(problem)
                 else:
                     moving = self._move_targets(problem)
                     self._state, step = sqp_step(problem, self._state, EPS_STAGES[self._stage])
                     steps.append(step)
                     self._watch(problem, step, moving)
             except NotPositiveDefiniteError:
-                if self._way.given_up or not self._step_back(problem):
+                if self._rests:
+                    exact = [shape for shape in self._rests if shape.exact]
+                    self._state, self.status = at_rest(best(exact).x), Status.SETTLED
+                elif self._way.given_up or not self._step_back(problem):
                     self.status = Status.NOT_FINITE
                     break
             done += 1
@@ -311,7 +310,8 @@ class FoldModel:
     def _wake(self) -> None:
         self.status = Status.RUNNING
         self._merits, self._stage, self._polished, self._still = [], 0, 0, False
-        self._steps_down, self._lettings, self._softer = 0, 0, None
+        self._steps_down, self._lettings = 0, 0
+        self._rests, self._sharings = [], 0
         self._way.start_anew()
         for pull in self._pulls():
             pull.wake()
@@ -382,6 +382,7 @@ class FoldModel:
         if state is None:
             return False
         self._state = at_rest(state.x)
+        self._merits, self._stage, self._polished, self._still = [], 0, 0, False
         for pull in self._pulls():
             self._replace(problem, pull)
         return True
@@ -398,10 +399,9 @@ class FoldModel:
             self._merits = []
             return
         self._merits.append(step.merit)
-        over = _STILL_OVER if self._softer is None else _STILL_AGAIN_OVER
-        recent = self._merits[-over:]
+        recent = self._merits[-_STILL_OVER:]
         fall = recent[0] - recent[-1]
-        still = len(recent) == over and fall < max(_STILL_PART * recent[-1], _NOTHING)
+        still = len(recent) == _STILL_OVER and fall < max(_STILL_PART * recent[-1], _NOTHING)
         if not still and len(self._merits) < _STAGE_MOST:
             return
         self._merits = []
@@ -447,39 +447,82 @@ class FoldModel:
         return True
 
     def _amended(self, problem: Problem) -> bool:
-        """At rest: whether some pull gives way or pulls harder now, the paper only when all others are content."""
+        """At rest: whether some pull gives way or pulls harder now, the paper only when all others do not."""
         x = self._state.x
         changed: list[Pull] = [pull for pull in self._pulls() if pull is not self._paper and pull.settle(x)]
-        if not changed and self._paper.settle(x):
+        if not changed and self._wanting(x) and self._paper.settle(x):
             changed.append(self._paper)
-            if self._softer is None:
-                self._softer = _Softer(x, self._condition.held(), self._handles.held())
         for pull in changed:
             self._replace(problem, pull)
         return bool(changed)
 
-    def _polish(self, problem: Problem) -> None:
-        """Put the DOG angles right in a shape that has come to rest: tight constraints earlier only crawl."""
+    def _wanting(self, x: FloatArray) -> bool:
+        """Whether a handle is off its target, or the paper stretched more than it may show, with handles alone.
+
+        What else is asked (a side, a kept patch) a paper that holds harder gives up for the handles.
+        """
+        if any(controls for controls, _ in self._at_work.values()):
+            return False
+        missed = bool(self._handles.gaps(x).max(initial=0.0) > REACHED)
+        return missed or mean_stretch(self.net, x) > MAX_MEAN_STRETCH
+
+    def _finish(self, problem: Problem) -> None:
+        """One iteration in a shape that has come to rest: its constraints made exact, then its peaks shared out."""
+        if self._rests and self._sharings < _MOST_SHARINGS:
+            self._share(problem)
+            return
+        # The DOG angles are put right only here: tight constraints earlier only crawl.
         x, exact = projection_step(problem, self._state.x, EPS_POLISHING)
         stuck = np.array_equal(x, self._state.x)
         self._state = at_rest(x)
         self._polished += 1
         if not (exact < _EXACT or stuck or self._polished >= _MAX_POLISH):
             return
-        # Polishing may undo a faint fold or stretch an edge: back to settling, with what gave way held harder.
-        undone: list[Pull] = [pull for pull in (self._condition, self._paper) if pull.undone(x)]
-        if not undone and self._softer is not None and self._missed(x) and self._paper.give_way():
-            self._state = at_rest(self._softer.x)
-            self._condition.hold(self._softer.condition)
-            self._handles.hold(self._softer.handles)
-            undone = [self._condition, self._paper, self._handles]
-        undone = undone or self._let_go(x)
+        self._polished = 0
+        if self._rests:
+            self._choose(x)
+            return
+        # It may have undone a faint fold: back to settling, with what gave way held harder.
+        undone: list[Pull] = [self._condition] if self._condition.undone(x) else self._let_go(x)
         for pull in undone:
             self._replace(problem, pull)
         if undone:
-            self._still, self._polished = False, 0
+            self._still = False
         else:
+            self._sharings, self._trial, self._lacking = 0, x, self._shortfall(x)
+            self._rests = [RestingShape(self._merit(x), x, exact=True)]
+
+    def _share(self, problem: Problem) -> None:
+        """Hold harder where something gave way, and let the neighbours take it over; the best shape is shown."""
+        changed = [pull for pull in self._pulls() if pull.share(self._trial)]
+        for pull in changed:
+            self._replace(problem, pull)
+        if changed:
+            self._trial = tangent_step(problem, self._trial, EPS_POLISHING)
+            self._rests.append(RestingShape(self._merit(self._trial), self._trial))
+            self._sharings += 1
+        chosen = best(self._rests)
+        self._state = at_rest(chosen.x)
+        if not changed or (len(self._rests) > _NO_BETTER and chosen is best(self._rests[:-_NO_BETTER])):
+            self._sharings = _MOST_SHARINGS
+
+    def _choose(self, x: FloatArray) -> None:
+        """x is the best shape made exact: settle in it, unless that has made another one the best."""
+        chosen = self._rests.index(best(self._rests))
+        self._rests[chosen] = RestingShape(self._merit(x), x, exact=True)
+        after = best(self._rests)
+        self._state = at_rest(after.x)
+        if after.exact:
             self.status = Status.SETTLED
+
+    def _merit(self, x: FloatArray) -> RestMerit:
+        missed = int((self._handles.gaps(x) > REACHED).sum()) + sum(len(pull.findings(x)) for pull in self._pulls())
+        faults = len(verify(self.net, self.net.frame.to_drawing(x)).faults)
+        short = max(self._shortfall(x) - _AS_SHORT * self._lacking - _A_LITTLE, 0.0)
+        return RestMerit(faults, missed, short, self._paper.peak(x))
+
+    def _shortfall(self, x: FloatArray) -> float:
+        return sum(pull.shortfall(x) for pull in self._pulls())
 
     def _let_go(self, x: FloatArray) -> list[Pull]:
         """Let everything in space pull softer when the paper is stretched for it more than paper can be.
@@ -493,11 +536,6 @@ class FoldModel:
         # Where the paper is held taut, it is stretched about as much as it is pulled.
         part = max(_CALM * MAX_MEAN_STRETCH / mean, _LEAST_HELD)
         return [pull for pull in self._pulls() if pull.let_go(part)]
-
-    def _missed(self, x: FloatArray) -> bool:
-        """Whether the fold counts as failed: a point is unfolded, a handle off its target, the paper stretched."""
-        off_target = bool(self._handles.gaps(x).max(initial=0.0) > REACHED)
-        return off_target or mean_stretch(self.net, x) > MAX_MEAN_STRETCH or self._condition.lost(x)
 
 
 def _same_structure(new: dict[str, IntArray], old: dict[str, IntArray]) -> bool:

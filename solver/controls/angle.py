@@ -23,6 +23,8 @@ _NEAR = 1.5
 #: At rest the asked value is corrected by the measured error, which is of second order in the grid where the
 #: term's own is of first: at most so often, at most so far, and only errors larger than this, degrees.
 _CORRECTIONS, _MOST_CORRECTED, _CLOSE = 12, 30.0, 0.3
+#: While the paper holds harder an angle may drift by this much, degrees, before it is corrected again.
+_DRIFTED = 1.5
 #: Angles that are missed although the paper is far from stretched pull harder, at most so often.
 _STIFFER, _STIFFENINGS = 3.0, 4
 #: Over the stretch budget all angles pull softer, at most so often.
@@ -162,11 +164,19 @@ class AnglePull(ControlPull):
             changed = True
         return changed
 
-    def wake(self) -> bool:
-        changed = bool(self._corrected or self._stiffened or self._softened)
+    def share(self, x: FloatArray) -> bool:
+        error = self._errors(x)
+        if self._softened or np.abs(error).max(initial=0.0) <= _DRIFTED:
+            return False
+        self._correction = np.clip(self._correction + error, -_MOST_CORRECTED, _MOST_CORRECTED)
+        return True
+
+    def shortfall(self, x: FloatArray) -> float:
+        return max(float(np.abs(self._errors(x)).max(initial=0.0)) - _DRIFTED, 0.0) / _REACHED
+
+    def wake(self) -> None:
         self._corrected = self._stiffened = self._softened = 0
         self._harder = 1.0
-        return changed
 
     def mark(self) -> object:
         return self._now

@@ -32,12 +32,13 @@ class ConditionPull(Pull):
         self._net, self._weight = net, weight
         self._term = fold_condition(net, weight)
         self._stiffness, self._times = np.ones(len(self._term.stencil)), 0
+        self._shared = np.ones(len(self._term.stencil))  # on top of it, once the shape is exact
         self.unfolding = False
 
     def terms(self) -> list[Term]:
         if self._weight == 0:
             return []
-        return [replace(self._term, weight=self._weight * self._stiffness)]
+        return [replace(self._term, weight=self._weight * self._stiffness * self._shared)]
 
     def settle(self, x: FloatArray) -> bool:
         """Stiffer when some point is not folded, or so little that polishing could undo it."""
@@ -51,17 +52,18 @@ class ConditionPull(Pull):
         """Whether polishing to x has undone a faint fold and the condition has been made stiffer for it."""
         return self._may_stiffen(x) and self._stiffen(~self._folded(x))
 
-    def lost(self, x: FloatArray) -> bool:
-        """Whether some point is not folded that should be."""
-        return self._may_stiffen(x) and not bool(self._folded(x).all())
+    def share(self, x: FloatArray) -> bool:
+        if not self._may_stiffen(x) or (folded := self._folded(x)).all():
+            return False
+        stiffer = np.minimum(
+            np.where(folded, 1.0, _ALONE_STIFFER) * self._shared, _ALONE_STIFFER**_ALONE_STIFFENINGS
+        )
+        changed = not np.array_equal(stiffer, self._shared)
+        self._shared = stiffer
+        return changed
 
-    def held(self) -> tuple[FloatArray, int]:
-        """How stiff each point is held, and how often it was made stiffer, for ``hold``."""
-        return self._stiffness, self._times
-
-    def hold(self, held: tuple[FloatArray, int]) -> None:
-        """Back to what ``held`` told."""
-        self._stiffness, self._times = held
+    def wake(self) -> None:
+        self._shared = np.ones_like(self._shared)
 
     def _folded(self, x: FloatArray) -> BoolArray:
         """(n,) whether each point that carries the condition is folded."""

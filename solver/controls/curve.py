@@ -20,6 +20,7 @@ from ..net.piecewise_dog import PiecewiseDog
 from ..objectives.continuity import mean_gap
 from ..optimize.term import LinearTerm
 from .control import Control, ControlPull, CreaseName, crease_index, crease_name, flag, number, positive, vector
+from .firmness import Firmness
 from .pull import Finding, Lack, Term
 from .space_curve import CurveShape, build_curve, laid_onto, measure_curve, resampled
 
@@ -178,7 +179,7 @@ class CurvePull(ControlPull):
         self._net, self._weight = net, weight
         self._flows: list[_Flow] = []
         self._targets: list[FloatArray] = []
-        self._harder, self._times, self._laid = 1.0, 0, 0
+        self._firmness, self._laid = Firmness(_STIFFENINGS), 0
         self._waiting: frozenset[int] = frozenset()  # creases that another control takes through flat
 
     def set(self, controls: Sequence[tuple[str, Any]], x: FloatArray) -> None:
@@ -208,7 +209,7 @@ class CurvePull(ControlPull):
         strength = np.concatenate(
             [np.full(len(f.points), f.control.strength if self._pulls(f) else 0.0) for f in self._flows]
         )
-        weight = self._weight * self._harder * strength
+        weight = self._weight * self._firmness.factor * strength
         return [LinearTerm("curves", stencil, coefficients, np.vstack(self._targets), weight)]
 
     def asks(self, x: FloatArray) -> bool:
@@ -256,23 +257,26 @@ class CurvePull(ControlPull):
         if turned > _CLOSE and self._laid < _LAYINGS:
             self._laid += 1
             return True
-        if self._times >= _STIFFENINGS or mean_stretch(self._net, x) > 0.5 * MEAN_BUDGET:
+        if self._firmness.spent or mean_stretch(self._net, x) > 0.5 * MEAN_BUDGET:
             return False
         if mean_gap(self._net, x) > _TAUT_GAP:
             return False
         if max(self._misses(x)) <= _CLOSE:
             return False
-        self._harder, self._times = self._harder * _STIFFER, self._times + 1
+        self._firmness.change(_STIFFER)
         return True
 
     def let_go(self, part: float) -> bool:
-        self._harder, self._times = self._harder * part, _STIFFENINGS
+        self._firmness.let_go(part)
         return bool(self._flows)
 
-    def wake(self) -> bool:
-        changed = self._times > 0
-        self._harder, self._times, self._laid = 1.0, 0, 0
-        return changed
+    def wake(self) -> None:
+        self._laid = 0
+        self._firmness.wake()
+
+    def shortfall(self, x: FloatArray) -> float:
+        misses = self._misses(x) if self._flows else []
+        return float(sum(max(miss - _REACHED, 0.0) for miss in misses))
 
     def mark(self) -> object:
         return [(flow.part, target) for flow, target in zip(self._flows, self._targets, strict=True)]

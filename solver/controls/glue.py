@@ -18,6 +18,7 @@ from ..net.piecewise_dog import PiecewiseDog
 from ..optimize.term import LinearTerm
 from .control import Control, ControlPull, flag, positive
 from .control import vector as numbers
+from .firmness import Firmness
 from .pair import located_pair
 from .pull import Finding, Lack, Term
 
@@ -80,7 +81,7 @@ class GluePull(ControlPull):
         self._seam = np.zeros(0, dtype=np.int64)
         self._gap = np.zeros((0, 3))  # what the pairs' gaps are asked to be now, net units
         self._open, self._bent = 0.0, 0.0  # parts of the gaps that are left, and of the bending that is there
-        self._harder, self._times = 1.0, 0
+        self._firmness = Firmness(_STIFFENINGS)
 
     def set(self, controls: Sequence[tuple[str, Any]], x: FloatArray) -> None:
         self._clear()
@@ -124,7 +125,7 @@ class GluePull(ControlPull):
     def terms(self) -> list[Term]:
         if not len(self._vertices):
             return []
-        weight = self._weight * self._harder * self._strength
+        weight = self._weight * self._firmness.factor * self._strength
         terms: list[Term] = [LinearTerm("seams", self._vertices, self._coefficients, self._gap, weight)]
         if len(self._across):
             terms.append(
@@ -156,17 +157,24 @@ class GluePull(ControlPull):
         return False
 
     def settle(self, x: FloatArray) -> bool:
-        if not len(self._vertices) or self._times >= _STIFFENINGS:
+        if not len(self._vertices) or self._firmness.spent:
             return False
         widest = float(np.linalg.norm(self._gaps(x), axis=1).max())
         if widest <= _CLOSE or mean_stretch(self._net, x) > 0.5 * MEAN_BUDGET:
             return False
-        self._harder, self._times = self._harder * _STIFFER, self._times + 1
+        self._firmness.change(_STIFFER)
         return True
 
     def let_go(self, part: float) -> bool:
-        self._harder, self._times = self._harder * part, _STIFFENINGS
+        self._firmness.let_go(part)
         return len(self._vertices) > 0
+
+    def wake(self) -> None:
+        """A seam that was let go is held again, as hard as before: with the usual strength it would gape."""
+        self._firmness.take_hold()
+
+    def shortfall(self, x: FloatArray) -> float:
+        return float(np.maximum(np.linalg.norm(self._gaps(x), axis=1) - _REACHED, 0.0).sum())
 
     def mark(self) -> object:
         return self._gap, self._open, self._bent

@@ -13,6 +13,7 @@ from ..drive import MAX_MEAN_STRETCH, MEAN_BUDGET, mean_stretch
 from ..errors import HandleError
 from ..net.piecewise_dog import PiecewiseDog
 from ..objectives.handles import AxisHandles, handles
+from .firmness import Firmness
 from .pull import Pull, Term
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ class HandlePull(Pull):
         self._strengths = np.zeros(0)
         self._targets = np.zeros((0, 3))  # where the handles are drawn to in the end, net units
         self._paths = np.zeros((0, 3))  # where they are drawn to now
-        self._harder, self._times = 1.0, 0
+        self._firmness = Firmness(_STIFFENINGS_IF_MISSED)
 
     def __len__(self) -> int:
         return len(self.handles)
@@ -93,7 +94,7 @@ class HandlePull(Pull):
         return at[whole], self._targets[whole]
 
     def terms(self) -> list[Term]:
-        stiffness = self._weight * self._harder * self._strengths
+        stiffness = self._weight * self._firmness.factor * self._strengths
         whole = self._axes.all(axis=1)
         part = ~whole
         terms: list[Term] = []
@@ -124,37 +125,36 @@ class HandlePull(Pull):
     def settle(self, x: FloatArray) -> bool:
         """Pull harder when handles stay off their targets though the paper is far from stretched, softer when they
         are near and it is stretched too far."""
-        if not len(self.handles) or self._times >= _STIFFENINGS_IF_MISSED:
+        if not len(self.handles) or self._firmness.spent:
             return False
         gap, mean = float(self.gaps(x).max()), mean_stretch(self._net, x)
         bearable = _NEARLY_STRETCHED if gap <= REACHED else _LAST_STRETCH
-        if gap > _CLOSE and mean <= 0.5 * MEAN_BUDGET and self._times < _STIFFENINGS:
-            self._harder *= _STIFFER
+        if gap > _CLOSE and mean <= 0.5 * MEAN_BUDGET and self._firmness.times < _STIFFENINGS:
+            self._firmness.change(_STIFFER)
         elif gap > _MISSED and mean <= bearable:
-            self._harder *= min(gap / _NEARER, _STIFFER_IF_MISSED)
+            self._firmness.change(min(gap / _NEARER, _STIFFER_IF_MISSED))
         elif gap < _ROOM and MAX_MEAN_STRETCH < mean <= _FAR_STRETCHED:
-            self._harder /= _SOFTER
+            self._firmness.change(1.0 / _SOFTER)
         else:
             return False
-        self._times += 1
+        return True
+
+    def share(self, x: FloatArray) -> bool:
+        gap = float(self.gaps(x).max(initial=0.0))
+        if gap <= _MISSED or mean_stretch(self._net, x) > _NEARLY_STRETCHED or self._firmness.spent:
+            return False
+        self._firmness.change(min(gap / _NEARER, _STIFFER_IF_MISSED))
         return True
 
     def let_go(self, part: float) -> bool:
-        self._harder, self._times = self._harder * part, _STIFFENINGS_IF_MISSED
+        self._firmness.let_go(part)
         return bool(self.handles)
 
-    def held(self) -> tuple[float, int]:
-        """How hard the handles pull, and how often they pulled harder, for ``hold``."""
-        return self._harder, self._times
+    def wake(self) -> None:
+        self._firmness.wake()
 
-    def hold(self, held: tuple[float, int]) -> None:
-        """Back to what ``held`` told."""
-        self._harder, self._times = held
-
-    def wake(self) -> bool:
-        changed = self._times > 0
-        self._harder, self._times = 1.0, 0
-        return changed
+    def shortfall(self, x: FloatArray) -> float:
+        return float(np.maximum(self.gaps(x) - REACHED, 0.0).sum())
 
     def mark(self) -> object:
         return self._paths

@@ -14,6 +14,7 @@ from ..net.piecewise_dog import PiecewiseDog
 from ..objectives.volume import Volume, patch_fours
 from ..optimize.term import gather
 from .control import Control, ControlPull, positive, vector
+from .firmness import Firmness
 from .pull import Finding, Lack, Term
 
 #: A bent patch becomes flat in so many iterations.
@@ -55,7 +56,7 @@ class KeepPull(ControlPull):
         self._fours = np.zeros((0, 4), dtype=np.int64)
         self._start, self._end = np.zeros(0), np.zeros(0)
         self._part = 1.0  # of the way from start to end
-        self._harder, self._times = 1.0, 0
+        self._firmness = Firmness(_STIFFENINGS)
 
     def set(self, controls: Sequence[tuple[str, Any]], x: FloatArray) -> None:
         patches: dict[int, str] = {}
@@ -83,7 +84,7 @@ class KeepPull(ControlPull):
             return []
         strength = np.array([control.strength for control in self._controls])[self._control]
         target = (1 - self._part) * self._start + self._part * self._end
-        return [Volume(self._fours, target, self._weight * self._harder * strength)]
+        return [Volume(self._fours, target, self._weight * self._firmness.factor * strength)]
 
     def on_way(self) -> bool:
         return self._part < 1.0
@@ -96,15 +97,13 @@ class KeepPull(ControlPull):
 
     def settle(self, x: FloatArray) -> bool:
         miss = float(np.abs(self._volumes(x) - self._end).max(initial=0.0))
-        if miss <= 0.25 * _REACHED or self._times >= _STIFFENINGS:
+        if miss <= 0.25 * _REACHED or self._firmness.spent:
             return False
-        self._harder, self._times = self._harder * _STIFFER, self._times + 1
+        self._firmness.change(_STIFFER)
         return True
 
-    def wake(self) -> bool:
-        changed = self._times > 0
-        self._harder, self._times = 1.0, 0
-        return changed
+    def wake(self) -> None:
+        self._firmness.wake()
 
     def mark(self) -> object:
         return self._part

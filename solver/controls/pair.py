@@ -16,6 +16,7 @@ from ..net.piecewise_dog import PiecewiseDog
 from ..objectives.distance import Distance
 from ..objectives.handles import AxisHandles
 from .control import Control, ControlPull, number, positive, vector
+from .firmness import Firmness
 from .pull import Finding, Lack, Term
 
 #: A pair's coordinates or distance change at most this much an iteration, net units; an annulus of 5,000 vertices
@@ -73,7 +74,7 @@ class PairPull(ControlPull):
         self._apart: BoolArray = np.zeros(0, dtype=bool)  # those with a distance
         self._end, self._now = np.zeros(0), np.zeros(0)  # lengths of the gaps in the end and now, net units
         self._direction = np.zeros((0, 3))  # of the gaps that are to close, in the drawing's axes
-        self._harder, self._times = 1.0, 0
+        self._firmness = Firmness(_STIFFENINGS)
 
     def set(self, controls: Sequence[tuple[str, Any]], x: FloatArray) -> None:
         pairs = tuple(control for _, control in controls)
@@ -93,7 +94,7 @@ class PairPull(ControlPull):
 
     def terms(self) -> list[Term]:
         strength = np.array([pair.strength for pair in self._pairs])
-        weight = self._weight * self._harder * strength
+        weight = self._weight * self._firmness.factor * strength
         terms: list[Term] = []
         touch, apart = np.flatnonzero(~self._apart), np.flatnonzero(self._apart)
         if len(touch):
@@ -128,21 +129,22 @@ class PairPull(ControlPull):
         return True
 
     def settle(self, x: FloatArray) -> bool:
-        if not len(self._pairs) or self._times >= _STIFFENINGS:
+        if not len(self._pairs) or self._firmness.spent:
             return False
         if self._misses(x).max() <= _CLOSE or mean_stretch(self._net, x) > 0.5 * MEAN_BUDGET:
             return False
-        self._harder, self._times = self._harder * _STIFFER, self._times + 1
+        self._firmness.change(_STIFFER)
         return True
 
     def let_go(self, part: float) -> bool:
-        self._harder, self._times = self._harder * part, _STIFFENINGS
+        self._firmness.let_go(part)
         return bool(self._pairs)
 
-    def wake(self) -> bool:
-        changed = self._times > 0
-        self._harder, self._times = 1.0, 0
-        return changed
+    def wake(self) -> None:
+        self._firmness.wake()
+
+    def shortfall(self, x: FloatArray) -> float:
+        return float(np.maximum(self._misses(x) - _REACHED, 0.0).sum()) if self._pairs else 0.0
 
     def mark(self) -> object:
         return self._now

@@ -80,6 +80,15 @@ class Pull:
         """At rest in x: give way, or pull harder. Whether any value has changed."""
         return False
 
+    def share(self, x: FloatArray) -> bool:
+        """In x, all but exact and at rest: hold harder where something gave way. Whether any value has changed."""
+        return False
+
+    def shortfall(self, x: FloatArray) -> float:
+        """How much x lacks of what was asked: grid edges off targets in space, parts of the drive's
+        angle, and of the degrees by which an angle of its own counts as missed."""
+        return 0.0
+
     def let_go(self, part: float) -> bool:
         """The paper is stretched for it: pull with this part of the present strength, and no harder any more.
 
@@ -87,9 +96,8 @@ class Pull:
         """
         return False
 
-    def wake(self) -> bool:
-        """Other targets: back to the usual strength. Whether any value has changed."""
-        return False
+    def wake(self) -> None:
+        """Other targets: back to the usual strength."""
 
     def mark(self) -> object:
         """How far the targets have come, for ``go_back``."""

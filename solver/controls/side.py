@@ -143,10 +143,8 @@ class SidePull(ControlPull):
         self._harder[wrong] *= _STIFFER
         return True
 
-    def wake(self) -> bool:
-        changed = bool((self._times > 0).any())
+    def wake(self) -> None:
         self._harder[:], self._times[:] = 1.0, 0
-        return changed
 
     def mark(self) -> object:
         return self._now

@@ -18,10 +18,13 @@ def continuity(net: PiecewiseDog, weight: float) -> LinearTerm:
     )
 
 
+def gaps(net: PiecewiseDog, x: FloatArray) -> FloatArray:
+    """(n,) distances of the two copies of each crease point, net units."""
+    stitches = net.stitches
+    between = np.einsum("nk,nkc->nc", stitches.weights, x[stitches.vertices])
+    return np.asarray(np.linalg.norm(between, axis=1))
+
+
 def mean_gap(net: PiecewiseDog, x: FloatArray) -> float:
     """Mean distance of two copies of a crease point, net units; 0 without creases."""
-    stitches = net.stitches
-    if not len(stitches.vertices):
-        return 0.0
-    gaps = np.einsum("nk,nkc->nc", stitches.weights, x[stitches.vertices])
-    return float(np.linalg.norm(gaps, axis=1).mean())
+    return float(gaps(net, x).mean()) if len(net.stitches.vertices) else 0.0

@@ -30,6 +30,8 @@ _MAX_BACKTRACKS = 20
 _SHIFT = 1e-3
 #: Damping, in parts of the bending metric: bounds, and factors after a shortened and after a full step.
 _LEAST_DAMPING, _MOST_DAMPING, _RAISE, _LOWER = 1e-3, 1e3, 4.0, 0.5
+#: Damping of a step along exact constraints, parts of the bending metric.
+_TANGENT_DAMPING = 0.5
 #: Momentum: n / (n + 3) in the n-th step (Nesterov's rule), at most this.
 _MOST_MOMENTUM = 0.95
 #: An extrapolation is taken when its merit is at most so many times the last; else momentum drops to a third.
@@ -133,6 +135,22 @@ def _near_enough(problem: Problem, state: SqpState, merit: Callable[[Evaluation]
         return True
     # The targets may have moved since: only now is a new evaluation worth its time.
     return ahead <= _WORSE * merit(problem.evaluate(state.x))
+
+
+def tangent_step(problem: Problem, x: FloatArray, eps: float) -> FloatArray:
+    """Move x (V,3), where the constraints hold, along them towards less objective energy, and back onto them.
+
+    One Gauss-Newton step with constraints as stiff as in a projection, damped so much that soft bends, along which
+    folds creep, hardly take part: it redistributes what stiff terms hold. Not searched along: the caller judges
+    what comes of it. Raises NotPositiveDefiniteError when the system breaks.
+    """
+    model = problem.linearize(x, 1.0 / eps, _SHIFT, _TANGENT_DAMPING)
+    gradient = model.gradient + problem.transposed(model.jacobians, model.evaluation.constraint / eps)
+    problem.factorize(model)
+    step = problem.system.solve(-gradient).reshape(-1, 3)
+    if not np.isfinite(step).all():
+        raise NotPositiveDefiniteError("the linear system gave a step that is not finite")
+    return projection_step(problem, x + step, eps)[0]
 
 
 def projection_step(problem: Problem, x: FloatArray, eps: float) -> tuple[FloatArray, float]:
