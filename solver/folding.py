@@ -45,9 +45,9 @@ _STAGE_MOST = 60
 #: Polished: the DOG angles hold to this, or no better after so many iterations.
 _EXACT, _MAX_POLISH = 1e-9, 40
 #: Rounds in which peaks are shared out, at most, and after how many that brought no better shape they end.
-_MOST_SHARINGS, _NO_BETTER = 16, 4
+_MOST_SHARINGS, _NO_BETTER = 16, 5
 #: A shape lacks as much as the first one up to this part more, and this much: grid edges, parts of angles.
-_AS_SHORT, _A_LITTLE = 1.03, 0.03
+_AS_SHORT, _A_LITTLE = 1.03, 0.06
 #: The offset lifts no vertex by more than this, net units.
 _FIRST_LIFT = 0.5
 #: A sheet that nothing asks to be bent lies down from here, and from there half of the way at a time, at most so

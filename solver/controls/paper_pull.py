@@ -89,9 +89,13 @@ class PaperPull(Pull):
         return True
 
     def peak(self, x: FloatArray) -> float:
-        """How far the worst edge, the mean gap and the worst gap are beyond what is allowed; 3: not at all."""
+        """How far the worst edge, the mean gap and the worst gap are beyond what is allowed; 3: not at all.
+
+        The mean gap counts by its root: what is shown is closed, and on coarse nets calm edges cost gaps.
+        """
         stretch, gap = edge_stretch(self._net, x).max(), gaps(self._net, x).max(initial=0.0)
-        parts = stretch / _ALLOWED_STRETCH, mean_gap(self._net, x) / _ALLOWED_GAP, gap / _TORN_GAP
+        mean = np.sqrt(mean_gap(self._net, x) / _ALLOWED_GAP)
+        parts = stretch / _ALLOWED_STRETCH, mean, gap / _TORN_GAP
         return float(np.maximum(parts, 1.0).sum())
 
     def wake(self) -> None:

@@ -32,6 +32,8 @@ _SHIFT = 1e-3
 _LEAST_DAMPING, _MOST_DAMPING, _RAISE, _LOWER = 1e-3, 1e3, 4.0, 0.5
 #: Damping of a step along exact constraints, parts of the bending metric.
 _TANGENT_DAMPING = 0.5
+#: After it constraints hold to this, if they do after so many projections; the first is mostly enough.
+_NEARLY_EXACT, _MOST_PROJECTIONS = 1e-4, 3
 #: Momentum: n / (n + 3) in the n-th step (Nesterov's rule), at most this.
 _MOST_MOMENTUM = 0.95
 #: An extrapolation is taken when its merit is at most so many times the last; else momentum drops to a third.
@@ -150,7 +152,12 @@ def tangent_step(problem: Problem, x: FloatArray, eps: float) -> FloatArray:
     step = problem.system.solve(-gradient).reshape(-1, 3)
     if not np.isfinite(step).all():
         raise NotPositiveDefiniteError("the linear system gave a step that is not finite")
-    return projection_step(problem, x + step, eps)[0]
+    x = x + step
+    for _ in range(_MOST_PROJECTIONS):
+        x, exact = projection_step(problem, x, eps)
+        if exact < _NEARLY_EXACT:
+            break
+    return x
 
 
 def projection_step(problem: Problem, x: FloatArray, eps: float) -> tuple[FloatArray, float]:
