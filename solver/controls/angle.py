@@ -155,7 +155,7 @@ class AnglePull(ControlPull):
             return False
         changed = False
         if self._corrected < _CORRECTIONS:
-            self._correction = np.clip(self._correction + error, -_MOST_CORRECTED, _MOST_CORRECTED)
+            self._correct(error)
             self._corrected += 1
             changed = True
         if np.abs(error).max() > _REACHED and mean <= 0.5 * MEAN_BUDGET and self._stiffened < _STIFFENINGS:
@@ -168,7 +168,7 @@ class AnglePull(ControlPull):
         error = self._errors(x)
         if self._softened or np.abs(error).max(initial=0.0) <= _DRIFTED:
             return False
-        self._correction = np.clip(self._correction + error, -_MOST_CORRECTED, _MOST_CORRECTED)
+        self._correct(error)
         return True
 
     def shortfall(self, x: FloatArray) -> float:
@@ -217,6 +217,10 @@ class AnglePull(ControlPull):
 
     def _present(self, x: FloatArray) -> FloatArray:
         return np.nan_to_num(self._measured(x))
+
+    def _correct(self, error: FloatArray) -> None:
+        """Ask for as much more as the measured angles miss, degrees."""
+        self._correction = np.clip(self._correction + error, -_MOST_CORRECTED, _MOST_CORRECTED)
 
     def _errors(self, x: FloatArray) -> FloatArray:
         """(n,) asked minus measured, 0 where nothing is asked or can be measured."""

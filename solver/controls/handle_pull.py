@@ -27,7 +27,8 @@ _STIFFER, _STIFFENINGS = 4.0, 3
 #: Handles farther than this from their targets at rest pull harder, net units.
 _CLOSE = 0.05
 #: Handles that would count as missed pull a little harder even where the paper is stretched, up to this mean, and
-#: oftener: the paper holds harder meanwhile. No harder than would bring them to the second distance.
+#: oftener: a paper whose handles are missed holds harder meanwhile. No harder than would bring them to the second
+#: distance.
 _MISSED, _NEARER, _STIFFER_IF_MISSED, _NEARLY_STRETCHED, _STIFFENINGS_IF_MISSED = 0.25, 0.22, 1.6, 0.0028, 6
 #: Handles that are near enough let go a little of a paper that they stretch too far: so much, while nearer than
 #: this, net units, and from a mean stretch that no other remedy would lower.
