@@ -11,13 +11,11 @@ import pytest
 import solver
 from benchmarks.gallery_figures import Figure, figures
 
-#: Quads along the longer side, where 16 are too few: they miss the curve of ``flow`` by 0.084 edges, 0.08 may be.
-COARSE = {"flow": 20}
 FAST = [figure for figure in figures() if figure.fast]
 
 
 def folded(figure: Figure) -> solver.FoldResult:
-    return solver.fold(figure.pattern, replace(figure.description, resolution=COARSE.get(figure.name, 16)))
+    return solver.fold(figure.pattern, replace(figure.description, resolution=16))
 
 
 @pytest.mark.parametrize("figure", FAST, ids=lambda figure: figure.name)
