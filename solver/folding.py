@@ -26,36 +26,26 @@ from .controls.side import Side, found_letters
 from .description import Handle, Weights
 from .drive import FIRST_ANGLE, MAX_MEAN_STRETCH, AngleDrive, mean_stretch
 from .errors import DescriptionError, NotPositiveDefiniteError
+from .finishing import Finishing, Next
 from .first_fold import choose_sides, first_fold
 from .laid_flat import laid_flat, off_plane
 from .net.piecewise_dog import PiecewiseDog
 from .objectives.bending import bending
 from .optimize.assembly import Problem
-from .optimize.sqp import StepReport, at_rest, projection_step, sqp_step, tangent_step
+from .optimize.sqp import StepReport, at_rest, sqp_step
 from .optimize.term import ResidualTerm
-from .resting import RestingShape, RestMerit, best
-from .verify import verify
 
-#: Softness of the constraints, 1/energy: while targets move, then in stages at rest, and while polishing.
-EPS_STAGES, EPS_POLISHING = (1e-2, 1e-3, 1e-5), 1e-8
+#: Softness of the constraints, 1/energy: while targets move, then in stages at rest.
+EPS_STAGES = (1e-2, 1e-3, 1e-5)
 #: Still: over this many iterations the merit falls by less than this part of itself (or by _NOTHING).
 _STILL_OVER, _STILL_PART, _NOTHING = 10, 2e-3, 1e-7
 #: A stage ends after so many iterations even if it is not still: the rest is creep (method, section 3).
 _STAGE_MOST = 60
-#: Polished: the DOG angles hold to this, or no better after so many iterations.
-_EXACT, _MAX_POLISH = 1e-9, 40
-#: Rounds in which peaks are shared out, at most, and after how many that brought no better shape they end.
-_MOST_SHARINGS, _NO_BETTER = 16, 5
-#: A shape lacks as much as the first one up to this part more, and this much: grid edges, parts of angles.
-_AS_SHORT, _A_LITTLE = 1.03, 0.06
 #: The offset lifts no vertex by more than this, net units.
 _FIRST_LIFT = 0.5
 #: A sheet that nothing asks to be bent lies down from here, and from there half of the way at a time, at most so
 #: often; parts of its longer side.
 _NEARLY_FLAT, _FAR_FROM_FLAT, _MOST_STEPS_DOWN = 0.05, 0.6, 8
-#: In the end nothing stretches the paper: what pulls lets go until the mean stretch is this part of what paper may
-#: show, to no less than the second part of its strength at once, and at most so often.
-_CALM, _LEAST_HELD, _LETTINGS = 0.97, 0.25, 16
 #: Folded anew, all creases are first folded to the first of these angles, degrees: of 45, 60 and 75 the best for
 #: what was stuck. What is stuck even then may get free from much deeper folds.
 OPENING_ANGLES = (60.0, 120.0)
@@ -124,10 +114,8 @@ class FoldModel:
         self._told_anew = True  # whether the problem may not hold the pulls' present terms
         self._shape: dict[str, IntArray] = {}  # stencils of the pulls' terms in the problem
         self._merits: list[float] = []
-        self._steps_down, self._lettings = 0, 0
-        self._stage, self._polished, self._still = 0, 0, False
-        self._rests: list[RestingShape] = []  # where it could rest, once still and exact
-        self._trial, self._lacking, self._sharings = x, 0.0, 0
+        self._stage, self._still, self._steps_down = 0, False, 0
+        self._finishing = Finishing(net)
         self._opening: AngleDrive | None = None  # at work while a sheet that is folded anew opens
         self._way = Homotopy()
         self._controls: tuple[Control, ...] = ()
@@ -270,9 +258,9 @@ class FoldModel:
                     steps.append(step)
                     self._watch(problem, step, moving)
             except NotPositiveDefiniteError:
-                if self._rests:
-                    exact = [shape for shape in self._rests if shape.exact]
-                    self._state, self.status = at_rest(best(exact).x), Status.SETTLED
+                exact = self._finishing.exact
+                if exact is not None:
+                    self._state, self.status = at_rest(exact), Status.SETTLED
                 elif self._way.given_up or not self._step_back(problem):
                     self.status = Status.NOT_FINITE
                     break
@@ -309,9 +297,8 @@ class FoldModel:
 
     def _wake(self) -> None:
         self.status = Status.RUNNING
-        self._merits, self._stage, self._polished, self._still = [], 0, 0, False
-        self._steps_down, self._lettings = 0, 0
-        self._rests, self._sharings = [], 0
+        self._merits, self._stage, self._still, self._steps_down = [], 0, False, 0
+        self._finishing = Finishing(self.net)
         self._way.start_anew()
         for pull in self._pulls():
             pull.wake()
@@ -382,7 +369,8 @@ class FoldModel:
         if state is None:
             return False
         self._state = at_rest(state.x)
-        self._merits, self._stage, self._polished, self._still = [], 0, 0, False
+        self._merits, self._stage, self._still = [], 0, False
+        self._finishing = Finishing(self.net)
         for pull in self._pulls():
             self._replace(problem, pull)
         return True
@@ -467,75 +455,15 @@ class FoldModel:
         return missed or mean_stretch(self.net, x) > MAX_MEAN_STRETCH
 
     def _finish(self, problem: Problem) -> None:
-        """One iteration in a shape that has come to rest: its constraints made exact, then its peaks shared out."""
-        if self._rests and self._sharings < _MOST_SHARINGS:
-            self._share(problem)
-            return
-        # The DOG angles are put right only here: tight constraints earlier only crawl.
-        x, exact = projection_step(problem, self._state.x, EPS_POLISHING)
-        stuck = np.array_equal(x, self._state.x)
-        self._state = at_rest(x)
-        self._polished += 1
-        if not (exact < _EXACT or stuck or self._polished >= _MAX_POLISH):
-            return
-        self._polished = 0
-        if self._rests:
-            self._choose(x)
-            return
-        # It may have undone a faint fold: back to settling, with what gave way held harder.
-        undone: list[Pull] = [self._condition] if self._condition.undone(x) else self._let_go(x)
-        for pull in undone:
+        """One iteration in a shape that has come to rest."""
+        step = self._finishing.step(problem, self._state.x, self._pulls())
+        self._state = at_rest(step.x)
+        for pull in step.changed:
             self._replace(problem, pull)
-        if undone:
+        if step.next is Next.SETTLING:
             self._still = False
-        else:
-            self._sharings, self._trial, self._lacking = 0, x, self._shortfall(x)
-            self._rests = [RestingShape(self._merit(x), x, exact=True)]
-
-    def _share(self, problem: Problem) -> None:
-        """Hold harder where something gave way, and let the neighbours take it over; the best shape is shown."""
-        changed = [pull for pull in self._pulls() if pull.share(self._trial)]
-        for pull in changed:
-            self._replace(problem, pull)
-        if changed:
-            self._trial = tangent_step(problem, self._trial, EPS_POLISHING)
-            self._rests.append(RestingShape(self._merit(self._trial), self._trial))
-            self._sharings += 1
-        chosen = best(self._rests)
-        self._state = at_rest(chosen.x)
-        if not changed or (len(self._rests) > _NO_BETTER and chosen is best(self._rests[:-_NO_BETTER])):
-            self._sharings = _MOST_SHARINGS
-
-    def _choose(self, x: FloatArray) -> None:
-        """x is the best shape made exact: settle in it, unless that has made another one the best."""
-        chosen = self._rests.index(best(self._rests))
-        self._rests[chosen] = RestingShape(self._merit(x), x, exact=True)
-        after = best(self._rests)
-        self._state = at_rest(after.x)
-        if after.exact:
+        elif step.next is Next.DONE:
             self.status = Status.SETTLED
-
-    def _merit(self, x: FloatArray) -> RestMerit:
-        missed = int((self._handles.gaps(x) > REACHED).sum()) + sum(len(pull.findings(x)) for pull in self._pulls())
-        faults = len(verify(self.net, self.net.frame.to_drawing(x)).faults)
-        short = max(self._shortfall(x) - _AS_SHORT * self._lacking - _A_LITTLE, 0.0)
-        return RestMerit(faults, missed, short, self._paper.peak(x))
-
-    def _shortfall(self, x: FloatArray) -> float:
-        return sum(pull.shortfall(x) for pull in self._pulls())
-
-    def _let_go(self, x: FloatArray) -> list[Pull]:
-        """Let everything in space pull softer when the paper is stretched for it more than paper can be.
-
-        What cannot be reached without stretching is out of reach.
-        """
-        mean = mean_stretch(self.net, x)
-        if mean <= MAX_MEAN_STRETCH or self._lettings >= _LETTINGS:
-            return []
-        self._lettings += 1
-        # Where the paper is held taut, it is stretched about as much as it is pulled.
-        part = max(_CALM * MAX_MEAN_STRETCH / mean, _LEAST_HELD)
-        return [pull for pull in self._pulls() if pull.let_go(part)]
 
 
 def _same_structure(new: dict[str, IntArray], old: dict[str, IntArray]) -> bool:

@@ -157,6 +157,9 @@ class HandlePull(Pull):
     def shortfall(self, x: FloatArray) -> float:
         return float(np.maximum(self.gaps(x) - REACHED, 0.0).sum())
 
+    def missed(self, x: FloatArray) -> int:
+        return int((self.gaps(x) > REACHED).sum())
+
     def mark(self) -> object:
         return self._paths
 

@@ -20,7 +20,7 @@ from .pull import Pull, Term
 
 #: While an edge is stretched by more than the first (the paper's 0.004, section 6.1), edges weigh more that are
 #: stretched by more than the second: the square of how many times, up to the third.
-_ALLOWED_STRETCH, _AIMED_STRETCH, _HEAVIEST = 0.0038, 0.003, 16.0
+_ALLOWED_STRETCH, _AIMED_STRETCH, _HEAVIEST = 0.0038, 0.0027, 4.0
 #: While it settles, what is stretched by more than the first, or so many times the mean where all is taut, weighs
 #: more by so many times its excess, up to the last, at most so often; not where the mean is nearly at its budget.
 _STRETCHED, _TAUT, _HARDER, _HARDEST, _MOST_HELD, _FULL = 0.0035, 2.0, 2.0, 9.0, 6, 0.95

@@ -89,6 +89,18 @@ class Pull:
         angle, and of the degrees by which an angle of its own counts as missed."""
         return 0.0
 
+    def missed(self, x: FloatArray) -> int:
+        """How many targets x does not reach."""
+        return len(self.findings(x))
+
+    def undone(self, x: FloatArray) -> bool:
+        """In x, just made exact: hold harder what that has undone. Whether any value has changed."""
+        return False
+
+    def peak(self, x: FloatArray) -> float:
+        """How far the worst places of the paper are beyond what is allowed."""
+        return 0.0
+
     def let_go(self, part: float) -> bool:
         """The paper is stretched for it: pull with this part of the present strength, and no harder any more.
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from ..arrays import FloatArray, dot
 from ..errors import NotPositiveDefiniteError
-from .assembly import Evaluation, Problem
+from .assembly import Evaluation, Linearization, Problem
 
 #: Armijo's constant (Nocedal and Wright, Numerical Optimization, Eq. 3.4).
 _ARMIJO = 1e-4
@@ -31,9 +31,12 @@ _SHIFT = 1e-3
 #: Damping, in parts of the bending metric: bounds, and factors after a shortened and after a full step.
 _LEAST_DAMPING, _MOST_DAMPING, _RAISE, _LOWER = 1e-3, 1e3, 4.0, 0.5
 #: Damping of a step along exact constraints, parts of the bending metric.
-_TANGENT_DAMPING = 0.5
+_TANGENT_DAMPING = 2.0
 #: After it constraints hold to this, if they do after so many projections; the first is mostly enough.
-_NEARLY_EXACT, _MOST_PROJECTIONS = 1e-4, 3
+_NEARLY_EXACT, _MOST_PROJECTIONS = 5e-5, 3
+#: A projection takes up to so many steps with one factorisation, while each leaves no more than this part of |φ|²:
+#: shapes hardly move, and solving costs a tenth of factorising (chord steps).
+_CHORDS, _CHORD_FALL = 6, 0.5
 #: Momentum: n / (n + 3) in the n-th step (Nesterov's rule), at most this.
 _MOST_MOMENTUM = 0.95
 #: An extrapolation is taken when its merit is at most so many times the last; else momentum drops to a third.
@@ -142,7 +145,7 @@ def _near_enough(problem: Problem, state: SqpState, merit: Callable[[Evaluation]
 def tangent_step(problem: Problem, x: FloatArray, eps: float) -> FloatArray:
     """Move x (V,3), where the constraints hold, along them towards less objective energy, and back onto them.
 
-    One Gauss-Newton step with constraints as stiff as in a projection, damped so much that soft bends, along which
+    One Gauss-Newton step with the constraints of softness ``eps``, damped so much that soft bends, along which
     folds creep, hardly take part: it redistributes what stiff terms hold. Not searched along: the caller judges
     what comes of it. Raises NotPositiveDefiniteError when the system breaks.
     """
@@ -153,29 +156,50 @@ def tangent_step(problem: Problem, x: FloatArray, eps: float) -> FloatArray:
     if not np.isfinite(step).all():
         raise NotPositiveDefiniteError("the linear system gave a step that is not finite")
     x = x + step
+    x, exact = _project(problem, model, x, problem.evaluate(x).constraint, eps, _NEARLY_EXACT)
     for _ in range(_MOST_PROJECTIONS):
-        x, exact = projection_step(problem, x, eps)
         if exact < _NEARLY_EXACT:
             break
+        x, exact = projection_step(problem, x, eps, _NEARLY_EXACT)
     return x
 
 
-def projection_step(problem: Problem, x: FloatArray, eps: float) -> tuple[FloatArray, float]:
+def projection_step(problem: Problem, x: FloatArray, eps: float, enough: float) -> tuple[FloatArray, float]:
     """Move x (V,3) towards exact constraints by the least objective energy; returns x and max |φ| there.
 
-    A Gauss-Newton step on |φ|² in the metric of the objective's Hessian, halved until |φ| falls: it changes
-    the shape as little as the stiff terms allow. The same x comes back when no length helps.
+    Gauss-Newton steps on |φ|² in the metric of the objective's Hessian: they change the shape as little as the
+    stiff terms allow. All use one factorisation, as long as each helps much and |φ| is more than ``enough``. The
+    same x comes back when nothing helps.
     """
     model = problem.linearize(x, 1.0 / eps, _SHIFT)
-    constraint = model.evaluation.constraint
     problem.factorize(model)
-    step = problem.system.solve(-problem.transposed(model.jacobians, constraint / eps)).reshape(-1, 3)
-    start = dot(constraint, constraint)
-    length = 1.0
-    for _ in range(_MAX_BACKTRACKS):
-        trial = x + length * step
-        c = problem.evaluate(trial).constraint
-        if dot(c, c) < start:
-            return trial, float(np.abs(c).max(initial=0.0))
-        length *= 0.5
+    return _project(problem, model, x, model.evaluation.constraint, eps, enough)
+
+
+def _project(
+    problem: Problem, model: Linearization, x: FloatArray, constraint: FloatArray, eps: float, enough: float
+) -> tuple[FloatArray, float]:
+    """Steps of a projection from x (V,3), where φ is ``constraint``, with a model factorised there or near by."""
+
+    def step(missing: FloatArray) -> FloatArray:
+        return problem.system.solve(-problem.transposed(model.jacobians, missing / eps)).reshape(-1, 3)
+
+    for _ in range(_CHORDS):
+        start = dot(constraint, constraint)
+        move, length = step(constraint), 1.0
+        for _ in range(_MAX_BACKTRACKS):
+            trial = x + length * move
+            c = problem.evaluate(trial).constraint
+            if dot(c, c) >= start:
+                # Second-order correction: what the curvature of φ adds to its linear model is taken off.
+                trial = trial + step(c - (1.0 - length) * constraint)
+                c = problem.evaluate(trial).constraint
+            if dot(c, c) < start:
+                break
+            length *= 0.5
+        else:
+            break
+        x, constraint = trial, c
+        if dot(c, c) > _CHORD_FALL * start or np.abs(c).max(initial=0.0) < enough:
+            break
     return x, float(np.abs(constraint).max(initial=0.0))
