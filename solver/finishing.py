@@ -15,7 +15,7 @@ import numpy as np
 from .arrays import FloatArray
 from .controls.condition_pull import FLAT
 from .controls.pull import Pull
-from .drive import MAX_MEAN_STRETCH, mean_stretch
+from .drive import MAX_MEAN_STRETCH, SHAREABLE_STRETCH, mean_stretch
 from .laid_flat import off_plane
 from .net.piecewise_dog import PiecewiseDog
 from .optimize.assembly import Problem
@@ -91,7 +91,7 @@ class Finishing:
         if self._rests:
             return self._choose(x, pulls)
         # It may have undone a faint fold: back to settling, with what gave way held harder.
-        undone = [pull for pull in pulls if pull.undone(x)] or self._let_go(x, pulls)
+        undone = [pull for pull in pulls if pull.undone(x)] or self._let_go(x, pulls, SHAREABLE_STRETCH)
         if undone:
             return FinishingStep(x, undone, Next.SETTLING)
         self._sharings, self._trial, self._lacking = 0, x, _shortfall(pulls, x)
@@ -134,20 +134,26 @@ class Finishing:
         chosen = self._rests.index(best(self._rests))
         self._rests[chosen] = RestingShape(self._merit(x, pulls), x, exact=True)
         after = best(self._rests)
-        return FinishingStep(after.x, (), Next.DONE if after.exact else Next.FINISHING)
+        if not after.exact:
+            return FinishingStep(after.x, (), Next.FINISHING)
+        softer = self._let_go(after.x, pulls, MAX_MEAN_STRETCH)
+        if softer:
+            self._rests = []
+            return FinishingStep(after.x, softer, Next.SETTLING)
+        return FinishingStep(after.x, (), Next.DONE)
 
     def _merit(self, x: FloatArray, pulls: Sequence[Pull]) -> RestMerit:
         faults = len(verify(self._net, self._net.frame.to_drawing(x)).faults)
         short = max(_shortfall(pulls, x) - _AS_SHORT * self._lacking - _A_LITTLE, 0.0)
         return RestMerit(faults, sum(pull.missed(x) for pull in pulls), short, sum(pull.peak(x) for pull in pulls))
 
-    def _let_go(self, x: FloatArray, pulls: Sequence[Pull]) -> list[Pull]:
-        """Let everything in space pull softer when the paper is stretched for it more than paper can be.
+    def _let_go(self, x: FloatArray, pulls: Sequence[Pull], bearable: float) -> list[Pull]:
+        """Let everything in space pull softer when the paper is stretched for it by more than ``bearable``.
 
         What cannot be reached without stretching is out of reach.
         """
         mean = mean_stretch(self._net, x)
-        if mean <= MAX_MEAN_STRETCH or self._lettings >= _LETTINGS:
+        if mean <= bearable or self._lettings >= _LETTINGS:
             return []
         self._lettings += 1
         # Where the paper is held taut, it is stretched about as much as it is pulled.

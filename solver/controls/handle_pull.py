@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import FloatArray, IntArray
-from ..drive import MAX_MEAN_STRETCH, MEAN_BUDGET, mean_stretch
+from ..drive import MAX_MEAN_STRETCH, MEAN_BUDGET, SHAREABLE_STRETCH, mean_stretch
 from ..errors import HandleError
 from ..net.piecewise_dog import PiecewiseDog
 from ..objectives.handles import AxisHandles, handles
@@ -142,7 +142,7 @@ class HandlePull(Pull):
 
     def share(self, x: FloatArray) -> bool:
         gap = float(self.gaps(x).max(initial=0.0))
-        if gap <= _MISSED or mean_stretch(self._net, x) > _NEARLY_STRETCHED or self._firmness.spent:
+        if gap <= _MISSED or mean_stretch(self._net, x) > SHAREABLE_STRETCH or self._firmness.spent:
             return False
         self._firmness.change(min(gap / _NEARER, _STIFFER_IF_MISSED))
         return True
