@@ -24,15 +24,18 @@ from .resting import RestingShape, RestMerit, best
 from .verify import verify
 
 #: While a shape is made exact its constraints are so many times as soft, 1/energy, as the largest residual is,
-#: within bounds: quadratic convergence even where they lose rank (Yamashita and Fukushima 2001, On the Rate of
-#: Convergence of the Levenberg-Marquardt Method). Stiffer from the start, rounding grows by 1e-16 / eps a step.
+#: within bounds: quadratic convergence also where they lose rank, while the residual grows with the distance to
+#: the exact shapes (Fan and Yuan 2005, On the Quadratic Convergence of the Levenberg-Marquardt Method without
+#: Nonsingularity Assumption). Of 0.03 to 1, small ones take fewer steps, large ones round less: a step is rounded
+#: by 1e-16 / softness. Stiffer than the second systems lose their digits.
 _SOFTNESS, _STIFFEST, _SOFTEST = 0.05, 1e-8, 1e-4
 #: Softness while peaks are shared out, 1/energy.
 _EPS_SHARING = 1e-6
-#: Exact: the DOG angles (radians) hold to the first, or to the second while an iteration leaves more than the third
-#: of them, or so many iterations were taken.
+#: Exact: the DOG angles (radians, on edges of length 1) hold to the first, or to the second while an iteration
+#: leaves more than the third of them, or so many iterations were taken.
 _EXACT, _EXACT_ENOUGH, _CREEPS, _MAX_POLISH = 1e-9, 1e-7, 0.5, 40
-#: What is not yet this exact, and not flat, is nudged by so much before it is made exact, net units.
+#: What comes to rest no more exact than this, and not flat, is nudged by so much, net units: a thousand times what
+#: rounding leaves there.
 _NOT_EXACT, _NUDGE = 1e-6, 1e-7
 #: Rounds in which peaks are shared out, at most, and after how many that brought no better shape they end.
 _MOST_SHARINGS, _NO_BETTER = 16, 5
@@ -53,7 +56,7 @@ class Next(Enum):
 
 @dataclass(frozen=True, eq=False)
 class FinishingStep:
-    """x (V,3), net units, to be shown; the pulls whose values have changed; what comes next."""
+    """x (V,3), net units, to be shown; the pulls whose values the problem has yet to be given; what comes next."""
 
     x: FloatArray
     changed: Sequence[Pull]
@@ -68,7 +71,7 @@ class Finishing:
         self._rests: list[RestingShape] = []
         self._lacking, self._trial = 0.0, np.zeros((0, 3))
         self._sharings, self._lettings = 0, 0
-        self._residual: float | None = None  # the largest one, rad, while a shape is made exact
+        self._residual: float | None = None  # the largest one while a shape is made exact
         self._polishings = 0
 
     @property
@@ -78,7 +81,8 @@ class Finishing:
         return best(shapes).x if shapes else None
 
     def step(self, problem: Problem, x: FloatArray, pulls: Sequence[Pull]) -> FinishingStep:
-        """One iteration from x (V,3), where ``problem`` has come to rest.
+        """One iteration from x (V,3), where ``problem`` has come to rest; while peaks are shared out, from the last
+        shape that was tried.
 
         Raises NotPositiveDefiniteError when the system breaks; ``exact`` is good then as well.
         """
@@ -138,6 +142,7 @@ class Finishing:
             return FinishingStep(after.x, (), Next.FINISHING)
         softer = self._let_go(after.x, pulls, MAX_MEAN_STRETCH)
         if softer:
+            # What was held harder meanwhile stays so: the paper is at its limit.
             self._rests = []
             return FinishingStep(after.x, softer, Next.SETTLING)
         return FinishingStep(after.x, (), Next.DONE)
@@ -168,7 +173,7 @@ def _shortfall(pulls: Sequence[Pull], x: FloatArray) -> float:
 def _uneven(shape: tuple[int, ...]) -> FloatArray:
     """Numbers from -0.5 to 0.5 without any symmetry, the same everywhere: multiples of the golden ratio.
 
-    A symmetric paper often cannot be exact as it is: it has to give way to one of two sides that mirror each other.
-    Left to rounding, the choice would depend on the version of numpy.
+    A symmetric paper often cannot be exact as it is, and gives way to some side. Left to rounding, the choice would
+    depend on the version of numpy.
     """
     return np.asarray((np.arange(np.prod(shape)) * ((np.sqrt(5.0) - 1.0) / 2.0) % 1.0 - 0.5).reshape(shape))

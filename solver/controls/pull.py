@@ -81,7 +81,10 @@ class Pull:
         return False
 
     def share(self, x: FloatArray) -> bool:
-        """In x, all but exact and at rest: hold harder where something gave way. Whether any value has changed."""
+        """In x, all but exact and at rest: hold harder where something gave way, until the next ``wake``.
+
+        Whether any value has changed.
+        """
         return False
 
     def shortfall(self, x: FloatArray) -> float:

@@ -32,7 +32,7 @@ _SHIFT = 1e-3
 _LEAST_DAMPING, _MOST_DAMPING, _RAISE, _LOWER = 1e-3, 1e3, 4.0, 0.5
 #: Damping of a step along exact constraints, parts of the bending metric.
 _TANGENT_DAMPING = 2.0
-#: After it constraints hold to this, if they do after so many projections; the first is mostly enough.
+#: After it constraints hold to this, if they do after so many projections more with factorisations of their own.
 _NEARLY_EXACT, _MOST_PROJECTIONS = 5e-5, 3
 #: A projection takes up to so many steps with one factorisation, while each leaves no more than this part of |φ|²:
 #: shapes hardly move, and solving costs a tenth of factorising (chord steps).
@@ -186,12 +186,14 @@ def _project(
 
     for _ in range(_CHORDS):
         start = dot(constraint, constraint)
+        if start == 0.0:
+            break
         move, length = step(constraint), 1.0
         for _ in range(_MAX_BACKTRACKS):
             trial = x + length * move
             c = problem.evaluate(trial).constraint
             if dot(c, c) >= start:
-                # Second-order correction: what the curvature of φ adds to its linear model is taken off.
+                # Second-order correction: what φ has more than its linear model would leave is solved for as well.
                 trial = trial + step(c - (1.0 - length) * constraint)
                 c = problem.evaluate(trial).constraint
             if dot(c, c) < start:
