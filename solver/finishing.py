@@ -131,21 +131,25 @@ class Finishing:
         chosen = best(self._rests)
         if not changed or (len(self._rests) > _NO_BETTER and chosen is best(self._rests[:-_NO_BETTER])):
             self._sharings = _MOST_SHARINGS
+        if self._sharings == _MOST_SHARINGS and chosen.exact:
+            return self._end(chosen.x, pulls)
         return FinishingStep(chosen.x, (), Next.FINISHING)
 
     def _choose(self, x: FloatArray, pulls: Sequence[Pull]) -> FinishingStep:
-        """x is the best shape made exact: rest in it, unless that has made another one the best."""
+        """x is the best shape made exact, which may have made another one the best."""
         chosen = self._rests.index(best(self._rests))
         self._rests[chosen] = RestingShape(self._merit(x, pulls), x, exact=True)
         after = best(self._rests)
-        if not after.exact:
-            return FinishingStep(after.x, (), Next.FINISHING)
-        softer = self._let_go(after.x, pulls, MAX_MEAN_STRETCH)
-        if softer:
-            # What was held harder meanwhile stays so: the paper is at its limit.
-            self._rests = []
-            return FinishingStep(after.x, softer, Next.SETTLING)
-        return FinishingStep(after.x, (), Next.DONE)
+        return self._end(after.x, pulls) if after.exact else FinishingStep(after.x, (), Next.FINISHING)
+
+    def _end(self, x: FloatArray, pulls: Sequence[Pull]) -> FinishingStep:
+        """x is the best shape, and exact: the fold ends in it, unless the paper is stretched too far even so."""
+        if not self._let_go(x, pulls, MAX_MEAN_STRETCH):
+            return FinishingStep(x, (), Next.DONE)
+        for pull in pulls:
+            pull.unshare()
+        self._rests = []
+        return FinishingStep(x, pulls, Next.SETTLING)
 
     def _merit(self, x: FloatArray, pulls: Sequence[Pull]) -> RestMerit:
         faults = len(verify(self._net, self._net.frame.to_drawing(x)).faults)

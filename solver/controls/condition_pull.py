@@ -62,8 +62,11 @@ class ConditionPull(Pull):
         self._shared = stiffer
         return changed
 
-    def wake(self) -> None:
+    def unshare(self) -> None:
         self._shared = np.ones_like(self._shared)
+
+    def wake(self) -> None:
+        self.unshare()
 
     def _folded(self, x: FloatArray) -> BoolArray:
         """(n,) whether each point that carries the condition is folded."""

@@ -98,6 +98,10 @@ class PaperPull(Pull):
         parts = stretch / _ALLOWED_STRETCH, mean, gap / _TORN_GAP
         return float(np.maximum(parts, 1.0).sum())
 
-    def wake(self) -> None:
+    def unshare(self) -> None:
         self._heavier, self._tighter = np.ones_like(self._heavier), np.ones_like(self._tighter)
-        self._tightened, self._held = 0, 0
+        self._tightened = 0
+
+    def wake(self) -> None:
+        self.unshare()
+        self._held = 0

@@ -81,11 +81,11 @@ class Pull:
         return False
 
     def share(self, x: FloatArray) -> bool:
-        """In x, all but exact and at rest: hold harder where something gave way, until the next ``wake``.
-
-        Whether any value has changed.
-        """
+        """In x, all but exact and at rest: hold harder where something gave way. Whether any value has changed."""
         return False
+
+    def unshare(self) -> None:
+        """The paper settles once more: back to the strength before ``share``. Handles keep theirs."""
 
     def shortfall(self, x: FloatArray) -> float:
         """How much x lacks of what was asked: grid edges off targets in space, parts of the drive's
