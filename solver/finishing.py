@@ -33,7 +33,7 @@ _SOFTNESS, _STIFFEST, _SOFTEST = 0.05, 1e-8, 1e-4
 _EPS_SHARING = 1e-6
 #: Exact: the DOG angles (radians, on edges of length 1) hold to the first, or to the second while an iteration
 #: leaves more than the third of them, or so many iterations were taken.
-_EXACT, _EXACT_ENOUGH, _CREEPS, _MAX_POLISH = 1e-9, 1e-7, 0.5, 40
+_EXACT, _EXACT_ENOUGH, _CREEPS, _MAX_POLISH = 1e-9, 1e-8, 0.5, 40
 #: What comes to rest no more exact than this, and not flat, is nudged by so much, net units: a thousand times what
 #: rounding leaves there.
 _NOT_EXACT, _NUDGE = 1e-6, 1e-7
