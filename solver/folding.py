@@ -297,12 +297,17 @@ class FoldModel:
 
     def _wake(self) -> None:
         self.status = Status.RUNNING
-        self._merits, self._stage, self._still, self._steps_down = [], 0, False, 0
-        self._finishing = Finishing(self.net)
+        self._settle_anew()
+        self._steps_down = 0
         self._way.start_anew()
         for pull in self._pulls():
             pull.wake()
         self._told_anew = True
+
+    def _settle_anew(self) -> None:
+        """Whatever was known of the shape's coming to rest holds no longer."""
+        self._merits, self._stage, self._still = [], 0, False
+        self._finishing = Finishing(self.net)
 
     def _prepared(self) -> Problem:
         if self._problem is None or self._told_anew:
@@ -369,8 +374,7 @@ class FoldModel:
         if state is None:
             return False
         self._state = at_rest(state.x)
-        self._merits, self._stage, self._still = [], 0, False
-        self._finishing = Finishing(self.net)
+        self._settle_anew()
         for pull in self._pulls():
             self._replace(problem, pull)
         return True
