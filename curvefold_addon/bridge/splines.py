@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import factorial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline, PPoly
+from scipy.interpolate import BSpline
 
 Array = NDArray[np.float64]
 
@@ -82,10 +83,12 @@ def nurbs_cubics(points: Array, order: int, cyclic: bool, endpoint: bool, bezier
 
 def _weighted_cubics(knots: Array, weighted: Array, degree: int) -> Array:
     """(S,4,3) cubics of a curve with (P,4) control points that are multiplied by their weights."""
-    pieces = [PPoly.from_spline(BSpline(knots, column, degree)).c for column in weighted.T]
     starts, lengths = knots[:-1], np.diff(knots)
     used = (lengths > 0) & (starts >= knots[degree]) & (starts < knots[len(weighted)])
-    return _hermite_cubics(np.stack(pieces, axis=2)[:, used], lengths[used])
+    curve = BSpline(knots, weighted, degree)
+    # Taylor's coefficients of every span, highest power first.
+    powers = [curve(starts[used], nu=power) / float(factorial(power)) for power in range(degree, -1, -1)]
+    return _hermite_cubics(np.array(powers), lengths[used])
 
 
 def bspline_cubics(curve: BSpline) -> Array:

@@ -58,7 +58,7 @@ class Overlay:
 def overlay(arrangement: Arrangement, grid: OrthogonalGrid) -> Overlay:
     """Lay an arrangement over its grid. All coordinates in cell lengths."""
     sheet = arrangement.sheet
-    chains = line_strings([chain.points for chain in arrangement.chains]).tolist()
+    chains = line_strings([chain.points for chain in arrangement.chains])
     x0, x1, y0, y1 = grid.xs[0], grid.xs[-1], grid.ys[0], grid.ys[-1]
     verticals = [LineString([(x, y0), (x, y1)]) for x in grid.xs]
     horizontals = [LineString([(x0, y), (x1, y)]) for y in grid.ys]
@@ -66,7 +66,7 @@ def overlay(arrangement: Arrangement, grid: OrthogonalGrid) -> Overlay:
     segments, points = segments_of(merged, NODE)
     line_x, line_y = _line_of(points[:, 0], grid.xs), _line_of(points[:, 1], grid.ys)
     middle = 0.5 * (points[segments[:, 0]] + points[segments[:, 1]])
-    rims = [LineString(ring.coords) for ring in (sheet.exterior, *sheet.interiors)]
+    rims = line_strings([shapely.get_coordinates(ring) for ring in (sheet.exterior, *sheet.interiors)])
     border = nearest_line(rims, middle, ON_LINE) >= 0
     chain = nearest_line(chains, middle, ON_LINE)
     chain[border] = -1

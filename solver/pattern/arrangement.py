@@ -19,7 +19,7 @@ from shapely import LineString, MultiPolygon, Point, Polygon
 from ..arrays import FloatArray, IntArray
 from ..errors import PatternError
 from .curves import CORNER, drop_repeats
-from .places import places_along
+from .places import Lines, line_strings, places_along
 
 #: Ends nearer than this to the border, to a crease or to each other are joined; part of the longer side.
 SNAP_TOLERANCE = 2e-3
@@ -143,11 +143,8 @@ def _trim(
         along_border = border.buffer(1e-7 * tolerance)
         if line.intersects(border):
             inside = _lines_of(inside.difference(along_border)) if _overlaps(inside, border) else inside
-        pieces = list(inside.geoms) if hasattr(inside, "geoms") else [inside]
-        pieces = _rejoin(pieces, points)
-        for piece in pieces:
-            if piece.length >= tolerance:
-                parts.append((drop_repeats(shapely.get_coordinates(piece)), k))
+        pieces = _rejoin(shapely.get_parts(inside), points)
+        parts += [(drop_repeats(row), k) for row in _rows_of(pieces[shapely.length(pieces) >= tolerance])]
     return parts
 
 
@@ -157,27 +154,27 @@ def _overlaps(line: LineString, border: LineString) -> bool:
 
 def _lines_of(geometry: shapely.Geometry) -> shapely.MultiLineString:
     """The line parts of any geometry."""
-    found = [g for g in shapely.get_parts(geometry, return_index=False) if g.geom_type == "LineString"]
-    nested = [g for g in shapely.get_parts(geometry) if hasattr(g, "geoms")]
-    for group in nested:
-        found.extend(g for g in group.geoms if g.geom_type == "LineString")
-    return shapely.MultiLineString([g for g in found if g.length > 0])
+    parts = shapely.get_parts(shapely.get_parts(geometry))
+    lines = shapely.get_type_id(parts) == shapely.GeometryType.LINESTRING
+    return shapely.multilinestrings(parts[lines & (shapely.length(parts) > 0)])
 
 
-def _rejoin(pieces: list[LineString], points: FloatArray) -> list[LineString]:
+def _rows_of(lines: Lines) -> list[FloatArray]:
+    """The points (P,2) of each line."""
+    coordinates, index = shapely.get_coordinates(lines, return_index=True)
+    return np.split(coordinates, np.searchsorted(index, np.arange(1, len(lines)))) if len(lines) else []
+
+
+def _rejoin(pieces: Lines, points: FloatArray) -> Lines:
     """Join pieces that shapely cut at a self-crossing or at a closed curve's start, and orient them."""
     if len(pieces) < 2:
         return pieces
-    merged = shapely.line_merge(shapely.MultiLineString(pieces))
-    result = list(merged.geoms) if hasattr(merged, "geoms") else [merged]
-    rows = [shapely.get_coordinates(piece) for piece in result]
+    merged = shapely.get_parts(shapely.line_merge(shapely.multilinestrings(pieces)))
+    rows = _rows_of(merged)
     middles = [len(row) // 2 for row in rows]
     ends = [[row[max(m - 1, 0)], row[min(m, len(row) - 1)]] for row, m in zip(rows, middles, strict=True)]
     along = places_along([points], np.zeros(2 * len(rows), dtype=np.int64), np.concatenate(ends)).reshape(-1, 2)
-    return [
-        piece if second >= first else LineString(row[::-1])
-        for piece, row, (first, second) in zip(result, rows, along, strict=True)
-    ]
+    return np.where(along[:, 1] >= along[:, 0], merged, shapely.reverse(merged))
 
 
 def _snap_ends(
@@ -201,13 +198,13 @@ def _snap_ends(
     moved = np.zeros(len(ends), dtype=bool)
     to_border = shapely.distance(shapely.points(places), border)
     on_border = to_border <= tolerance
-    for n in np.flatnonzero(on_border):
-        nearest = border.interpolate(border.project(Point(places[n])))
-        target[n] = nearest.x, nearest.y
-        moved[n] = True
+    target[on_border] = _nearest_on(border, places[on_border])
+    moved |= on_border
     # Ends that meet each other: one common point, the mean; a point on the border wins.
     around = cKDTree(places).query_ball_point(places, tolerance * (1 + 1e-9), return_sorted=True)
     for n, near in enumerate(around):
+        if len(near) == 1:
+            continue
         close = np.array(near, dtype=np.int64)
         close = close[np.hypot(*(places[close] - places[n]).T) <= tolerance]
         if len(close) > 1 and close[0] == n:
@@ -215,12 +212,13 @@ def _snap_ends(
             target[close] = target[fixed[0]] if len(fixed) else places[close].mean(axis=0)
             moved[close] = True
     result = [points.copy() for points, _ in parts]
-    lines = [LineString(points) for points, _ in parts]
+    lines = line_strings([points for points, _ in parts])
     tree = shapely.STRtree(lines)
     for n, (k, _side, place) in enumerate(ends):
         if moved[n]:
             continue
-        near = np.sort(tree.query(Point(place), predicate="dwithin", distance=tolerance))
+        # Boxes are enough: what is nearest is measured below, and a predicate costs more than that.
+        near = np.sort(tree.query(shapely.box(*(place - tolerance), *(place + tolerance))))
         own = _far_part(parts[k][0], _side, 4 * tolerance)
         candidates = [lines[j] for j in near if j != k] + ([own] if own is not None else [])
         if not candidates:
@@ -228,9 +226,7 @@ def _snap_ends(
         distances = shapely.distance(Point(place), candidates)
         best = int(np.argmin(distances))
         if distances[best] <= tolerance:
-            line = candidates[best]
-            nearest = line.interpolate(line.project(Point(place)))
-            target[n] = nearest.x, nearest.y
+            target[n] = _nearest_on(candidates[best], place[None])[0]
             moved[n] = True
     joined: list[str] = []
     for n, (k, side, place) in enumerate(ends):
@@ -244,6 +240,12 @@ def _snap_ends(
     if joined:
         notes.append(f"ends that missed by a little were joined: {_listed(joined)}")
     return [(drop_repeats(points), crease) for points, (_, crease) in zip(result, parts, strict=True)]
+
+
+def _nearest_on(line: shapely.Geometry, places: FloatArray) -> FloatArray:
+    """The points (N,2) of a line that are nearest to the places (N,2)."""
+    along = shapely.line_locate_point(line, shapely.points(places))
+    return np.asarray(shapely.get_coordinates(shapely.line_interpolate_point(line, along)))
 
 
 def _listed(labels: list[str]) -> str:
@@ -264,7 +266,7 @@ def _node(
     sheet: Polygon, parts: list[tuple[FloatArray, int]], node: float
 ) -> tuple[IntArray, IntArray, FloatArray]:
     """Segments (S,2) of node indices, the crease that owns each (-1 border), node coordinates (N,2)."""
-    creases = [LineString(points) for points, _ in parts]
+    creases = line_strings([points for points, _ in parts])
     # Targets of snapped ends lie on their line only up to rounding: put a node there.
     ends = np.array([p for points, _ in parts for p in (points[0], points[-1])])
     border = shapely.snap(sheet.boundary, shapely.MultiPoint(ends), 10 * node)
@@ -280,16 +282,16 @@ def _node(
     return segments[keep], owner[keep], points
 
 
-def _snapped(lines: list[LineString], ends: FloatArray, within: float) -> list[LineString]:
+def _snapped(lines: Lines, ends: FloatArray, within: float) -> Lines:
     """The lines with points where ends (N,2) lie on them."""
     if len(lines) * len(ends) <= _MANY_SNAPS:
-        return [shapely.snap(line, shapely.MultiPoint(ends), within) for line in lines]
+        return np.asarray(shapely.snap(lines, shapely.MultiPoint(ends), within))
     # Shapely looks at all ends for every line: here it is told the near ones alone, once, in the same order.
     ends = ends[np.sort(np.unique(ends, axis=0, return_index=True)[1])]
     line, end = shapely.STRtree(shapely.points(ends)).query(lines, predicate="dwithin", distance=2 * within)
     order = np.lexsort((end, line))
     near = shapely.multipoints(ends[end[order]], indices=line[order])
-    return list(shapely.snap(np.array(lines, dtype=object), near, within))
+    return np.asarray(shapely.snap(lines, near, within))
 
 
 def segments_of(lines: shapely.Geometry, node: float) -> tuple[IntArray, FloatArray]:
@@ -305,7 +307,7 @@ def segments_of(lines: shapely.Geometry, node: float) -> tuple[IntArray, FloatAr
     return np.unique(segments, axis=0), coordinates[first]
 
 
-def nearest_line(lines: list[LineString], points: FloatArray, within: float) -> IntArray:
+def nearest_line(lines: Lines, points: FloatArray, within: float) -> IntArray:
     """Index (N,) of the first line within a distance of each point, -1 where there is none."""
     result = np.full(len(points), -1, dtype=np.int64)
     # By segments: a tree of whole curves has boxes that hold half of the sheet.

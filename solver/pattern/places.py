@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 
 from ..arrays import FloatArray, IntArray
 
+#: Shapely's lines (N,).
+Lines = NDArray[np.object_]
+
 #: Shapely looks at every segment for every point. From this many of both on, only at the nearest ones.
 _MANY_LOOKS = 200_000
 #: Distances that differ by less than this part of a coordinate may be the same.
@@ -34,7 +37,7 @@ def places_along(lines: Sequence[FloatArray], which: IntArray, points: FloatArra
     return result
 
 
-def line_strings(lines: Sequence[FloatArray]) -> NDArray[np.object_]:
+def line_strings(lines: Sequence[FloatArray]) -> Lines:
     """The (P,2) arrays as shapely's lines (N,), which single constructors make slowly."""
     if not len(lines):
         return np.empty(0, dtype=object)
@@ -47,11 +50,17 @@ def _on_nearest_segment(line: FloatArray, points: FloatArray) -> FloatArray:
     start = np.concatenate([[0.0], np.cumsum(shapely.length(segments))])
     places = shapely.points(points)
     tree = shapely.STRtree(segments)
-    # The nearest one of a tree may be a rounding farther than another: look at all that are as near.
-    (point, _), least = tree.query_nearest(places, return_distance=True, all_matches=False)
-    reach = np.empty(len(points))
-    reach[point] = least * (1 + _ROUNDING) + _ROUNDING * np.abs(line).max()
-    point, segment = tree.query(places, predicate="dwithin", distance=reach)
+    # A point on the line is found by a small reach, which is quicker than asking for the nearest segment. That
+    # may be a rounding farther than another: all that are as near are looked at.
+    reach = np.full(len(points), 2 * _ROUNDING * np.abs(line).max())
+    found = tree.query(places, predicate="dwithin", distance=reach)
+    off = np.setdiff1d(np.arange(len(points)), found[0])
+    if len(off):
+        (asked, _), least = tree.query_nearest(places[off], return_distance=True, all_matches=False)
+        reach[off[asked]] += least * (1 + _ROUNDING)
+        more = tree.query(places[off], predicate="dwithin", distance=reach[off])
+        found = np.concatenate([found, [off[more[0]], more[1]]], axis=1)
+    point, segment = found
     order = np.lexsort((segment, shapely.distance(places[point], segments[segment]), point))
     point, segment = point[order], segment[order]
     first = segment[np.searchsorted(point, np.arange(len(points)))]

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import PatternError
 
 #: Largest distance between a curve and its samples, relative to the drawing's longer side. Half of the
@@ -18,8 +18,12 @@ from ..errors import PatternError
 SAGITTA = 0.5e-5
 #: Samples of a curved segment at least, however flat it is.
 MIN_SAMPLES = 16
+#: Samples of a straight one: its ends.
+_STRAIGHT_SAMPLES = 2
 #: Points of a whole drawing. A drawing that needs more is not a crease pattern a net could carry.
 MAX_POINTS = 200_000
+#: Samples of a segment that needs more than a whole drawing may have.
+_TOO_MANY = MAX_POINTS + 1
 #: A cubic this close to its chord (relative to the drawing) is a straight line drawn as a curve.
 STRAIGHT = 1e-9
 #: Allowed error of the cubics that stand for an arc, relative to the drawing's longer side.
@@ -119,26 +123,17 @@ def sample(subpath: Subpath, size: float, budget: int) -> Curve | None:
 
     ``size`` is the drawing's longer side in the same units; at most ``budget`` points. Raises PatternError.
     """
+    counts = _sample_counts(subpath.segments, size)
+    if np.maximum(counts - 1, 0).sum() > budget:
+        raise PatternError(f"the drawing needs more than {MAX_POINTS:,} points")
+    segments = [subpath.segments[k] for k in np.flatnonzero(counts)]
+    counts = counts[counts > 0]
     pieces: list[FloatArray] = []
     beziers: list[FloatArray] | None = []
-    left = budget
-    for segment in subpath.segments:
-        straight = segment.kind == "line" or _is_straight(segment, STRAIGHT * size)
-        if straight and np.array_equal(segment.start, segment.end):
-            continue
-        if straight:
-            points = np.array([segment.start, segment.end])
-        else:
-            count = _sample_count(segment, SAGITTA * size)
-            if count > left:
-                raise PatternError(f"the drawing needs more than {MAX_POINTS:,} points")
-            points = _sampled(segment, count)
-        left -= len(points) - 1
-        if left < 0:
-            raise PatternError(f"the drawing needs more than {MAX_POINTS:,} points")
+    for segment, count, points in zip(segments, counts, _sampled(segments, counts), strict=True):
         pieces.append(points if not pieces else points[1:])
         if beziers is not None:
-            cubics = _as_cubics(segment, straight, ARC_AS_CUBICS * size)
+            cubics = _as_cubics(segment, count == _STRAIGHT_SAMPLES, ARC_AS_CUBICS * size)
             if cubics is None:
                 beziers = None
             else:
@@ -156,56 +151,90 @@ def sample(subpath: Subpath, size: float, budget: int) -> Curve | None:
     return Curve(points, closed, np.array(beziers) if beziers else None)
 
 
-def _is_straight(segment: Segment, tolerance: float) -> bool:
-    """Whether a cubic covers its chord and nothing else."""
-    if segment.kind != "cubic":
-        return False
-    chord = segment.end - segment.start
-    length = float(np.hypot(*chord))
-    offsets = segment.points[1:3] - segment.start
-    if length <= tolerance:
-        return bool(np.hypot(*offsets.T).max() <= tolerance)
-    along = offsets @ chord / length
-    across = offsets @ np.array([-chord[1], chord[0]]) / length
-    return bool(
-        np.abs(across).max() <= tolerance and along.min() >= -tolerance and along.max() <= length + tolerance
-    )
+def _sample_counts(segments: Sequence[Segment], size: float) -> IntArray:
+    """Points (S,) of each segment, ends included, so that no chord is further than ``SAGITTA`` from it.
 
-
-def _sample_count(segment: Segment, tolerance: float) -> int:
-    """Points, ends included, so that no chord is further than ``tolerance`` from the curve."""
-    if segment.kind == "cubic":
-        p = segment.points
+    Two where it is straight, none where it has no length. ``size`` is the drawing's longer side.
+    """
+    straight = np.array([segment.kind == "line" for segment in segments], dtype=bool)
+    counts = np.full(len(segments), _STRAIGHT_SAMPLES, dtype=np.int64)
+    where, controls = _cubics_of(segments)
+    straight[where] = _cover_their_chords(controls, STRAIGHT * size)
+    with np.errstate(divide="ignore", invalid="ignore"):
         # |B''| <= 6 max |second difference|, and a chord's sagitta is at most |B''| h^2 / 8.
-        bend = 6.0 * float(np.hypot(*(p[:-2] - 2 * p[1:-1] + p[2:]).T).max())
-        pieces = math.sqrt(bend / (8.0 * tolerance)) if tolerance > 0 else math.inf
-    else:
-        radius = float(np.linalg.norm(segment.points[3:], 2))
-        ratio = tolerance / radius if radius > 0 else 1.0
-        # Sagitta of a circle: r (1 - cos(step / 2)); written with arcsin, which keeps its digits.
-        step = 4.0 * math.asin(math.sqrt(min(ratio, 1.0) / 2.0))
-        pieces = abs(segment.angles[1]) / step if step > 0 else math.inf
-    if not pieces < MAX_POINTS:
-        return MAX_POINTS + 1
-    return max(math.ceil(pieces) + 1, MIN_SAMPLES)
+        bend = controls[:, :-2] - 2 * controls[:, 1:-1] + controls[:, 2:]
+        pieces = np.sqrt(6.0 * np.hypot(bend[..., 0], bend[..., 1]).max(axis=1) / (8.0 * SAGITTA * size))
+        usual = pieces < MAX_POINTS
+        counts[where] = np.where(
+            usual, np.maximum(np.ceil(np.where(usual, pieces, 0.0)) + 1, MIN_SAMPLES), _TOO_MANY
+        )
+    for k in np.flatnonzero(~straight):
+        if segments[k].kind == "arc":
+            counts[k] = _arc_sample_count(segments[k], SAGITTA * size)
+    counts[straight] = [
+        _STRAIGHT_SAMPLES * (segments[k].start != segments[k].end).any() for k in np.flatnonzero(straight)
+    ]
+    return counts
 
 
-def _sampled(segment: Segment, count: int) -> FloatArray:
-    t = np.linspace(0.0, 1.0, count)
-    if segment.kind == "arc":
-        points = segment.at_angles(segment.angles[0] + segment.angles[1] * t)
-    else:
-        points = evaluate_cubic(segment.points, t)
-    # The drawn ends exactly, so that neighbours share them.
-    points[0], points[-1] = segment.start, segment.end
-    return points
+def _cubics_of(segments: Sequence[Segment]) -> tuple[IntArray, FloatArray]:
+    """Which segments are cubics, and their control points (C,4,2)."""
+    where = np.array([k for k, segment in enumerate(segments) if segment.kind == "cubic"], dtype=np.int64)
+    return where, np.array([segments[k].points for k in where]).reshape(-1, 4, 2)
 
 
-def evaluate_cubic(control: FloatArray, t: FloatArray) -> FloatArray:
-    """(n,2) points of a cubic Bezier with (4,2) control points."""
+def _cover_their_chords(controls: FloatArray, tolerance: float) -> BoolArray:
+    """Which cubics (C,4,2) cover their chords and nothing else."""
+    chord = controls[:, 3] - controls[:, 0]
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    offsets = controls[:, 1:3] - controls[:, :1]
+    # Of a cubic without a chord, nothing may be further than the tolerance from its point.
+    point = length <= tolerance
+    direction = chord / np.where(point, 1.0, length)[:, None]
+    along = np.einsum("chd,cd->ch", offsets, direction)
+    across = np.abs(offsets[..., 1] * direction[:, None, 0] - offsets[..., 0] * direction[:, None, 1])
+    on_chord = (across <= tolerance) & (along >= -tolerance) & (along <= length[:, None] + tolerance)
+    at_point = np.hypot(offsets[..., 0], offsets[..., 1]) <= tolerance
+    return np.asarray(np.where(point[:, None], at_point, on_chord).all(axis=1))
+
+
+def _arc_sample_count(segment: Segment, tolerance: float) -> int:
+    radius = float(np.linalg.norm(segment.points[3:], 2))
+    ratio = tolerance / radius if radius > 0 else 1.0
+    # Sagitta of a circle: r (1 - cos(step / 2)); written with arcsin, which keeps its digits.
+    step = 4.0 * math.asin(math.sqrt(min(ratio, 1.0) / 2.0))
+    pieces = abs(segment.angles[1]) / step if step > 0 else math.inf
+    return max(math.ceil(pieces) + 1, MIN_SAMPLES) if pieces < MAX_POINTS else _TOO_MANY
+
+
+def _sampled(segments: Sequence[Segment], counts: IntArray) -> list[FloatArray]:
+    """As many points (n,2) of each segment."""
+    result = [
+        segment.at_angles(segment.angles[0] + segment.angles[1] * np.linspace(0.0, 1.0, count))
+        if segment.kind == "arc"
+        else segment.points[[0, -1]]
+        for segment, count in zip(segments, counts, strict=True)
+    ]
+    where, controls = _cubics_of(segments)
+    for count in np.unique(counts[where]):
+        if count == _STRAIGHT_SAMPLES:
+            continue
+        mine = np.flatnonzero(counts[where] == count)
+        for k, points in zip(
+            where[mine], evaluate_cubics(controls[mine], np.linspace(0.0, 1.0, count)), strict=True
+        ):
+            result[k] = points
+    for segment, points in zip(segments, result, strict=True):
+        # The drawn ends exactly, so that neighbours share them.
+        points[0], points[-1] = segment.start, segment.end
+    return result
+
+
+def evaluate_cubics(controls: FloatArray, t: FloatArray) -> FloatArray:
+    """(C,n,2) points of cubic Beziers with (C,4,2) control points."""
     s = 1.0 - t
     weights = np.stack([s**3, 3 * s**2 * t, 3 * s * t**2, t**3], axis=1)
-    return np.asarray(weights @ control, dtype=np.float64)
+    return np.asarray(weights @ controls, dtype=np.float64)
 
 
 def _as_cubics(segment: Segment, straight: bool, tolerance: float) -> list[FloatArray] | None:
