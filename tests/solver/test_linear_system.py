@@ -187,6 +187,40 @@ def test_two_threads_give_the_same_bits_as_one(name: str) -> None:
         assert one.solve(rhs).tobytes() == two.solve(rhs).tobytes()
 
 
+class _Fenced:
+    """numpy, but what it makes of zeros lies between two fences."""
+
+    WIDTH, FENCE = 4096, 7.25e77
+
+    def __init__(self) -> None:
+        self.fences: list[np.ndarray] = []
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(np, name)
+
+    def zeros(self, size: int, dtype: type = np.float64) -> np.ndarray:
+        whole = np.full(size + 2 * self.WIDTH, self.FENCE)
+        self.fences += [whole[: self.WIDTH], whole[self.WIDTH + size :]]
+        inside = whole[self.WIDTH : self.WIDTH + size].view(dtype)
+        inside[:] = 0
+        return inside
+
+
+@pytest.mark.parametrize("name", PATTERNS)
+@pytest.mark.usefixtures("eager_threads")
+def test_nothing_is_written_beside_the_factor(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Routines are told bare addresses: what they wrote elsewhere would end Blender, minutes later."""
+    rows, cols, plane = PATTERNS[name]()
+    size = 3 * len(plane)
+    fenced = _Fenced()
+    monkeypatch.setattr(numeric, "np", fenced)
+    system = LinearSystem(rows, cols, plane)
+    system.factorize(dominant_values(rows, cols, size))
+    system.solve(np.ones(size))
+    assert len(fenced.fences) >= 2 * 5  # panels, updates, two vectors, and whether pivots were positive
+    assert all((fence == _Fenced.FENCE).all() for fence in fenced.fences)
+
+
 def test_the_addition_of_openblas_gives_the_same_bits_as_numpy(monkeypatch: pytest.MonkeyPatch) -> None:
     rows, cols, plane = PATTERNS["grid"]()
     values = dominant_values(rows, cols, 3 * len(plane))
