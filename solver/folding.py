@@ -253,6 +253,7 @@ class FoldModel:
                 if self._still:
                     self._finish(problem)
                 else:
+                    self._keep_up(problem)
                     moving = self._move_targets(problem)
                     self._state, step = sqp_step(problem, self._state, EPS_STAGES[self._stage])
                     steps.append(step)
@@ -345,6 +346,23 @@ class FoldModel:
     @staticmethod
     def _replace(problem: Problem, pull: Pull) -> None:
         problem.replace({term.name: term for term in pull.terms()})
+
+    def _keep_up(self, problem: Problem) -> None:
+        """Fold what a drag leaves unfolded while it goes on, where nothing but handles pulls.
+
+        With anything else it decides which of several folds a paper takes, and the wrong one may end stuck: a sheet
+        with two arcs that is glued to a ring does not close.
+        """
+        alone = (
+            len(self._handles) and self._opening is None and self._drive.angle is None and not self._controlled()
+        )
+        if alone and self._condition.keep_up(self._state.x):
+            self._replace(problem, self._condition)
+            self._merits = []  # of other weights
+
+    def _controlled(self) -> bool:
+        """Whether the paper is told more than handles and an angle for all creases."""
+        return any(controls for controls, _ in self._at_work.values())
 
     def _move_targets(self, problem: Problem) -> bool:
         """Bring the targets of this iteration a step nearer; whether they are still on their way."""
@@ -453,7 +471,7 @@ class FoldModel:
 
         What else is asked (a side, a kept patch) a paper that holds harder gives up for the handles.
         """
-        if any(controls for controls, _ in self._at_work.values()):
+        if self._controlled():
             return False
         missed = bool(self._handles.gaps(x).max(initial=0.0) > REACHED)
         return missed or mean_stretch(self.net, x) > MAX_MEAN_STRETCH

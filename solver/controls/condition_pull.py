@@ -1,4 +1,4 @@
-"""The fold condition at work: stiffer where points come to rest unfolded."""
+"""The fold condition at work: stiffer where points are not folded."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ from ..objectives.fold_condition import fold_condition
 from ..optimize.term import gather
 from .pull import Pull, Term
 
+#: In a drag points are looked at every so many iterations, and what is not folded so often in a row is made this
+#: much stiffer each time, up to the last.
+_LOOK_EVERY, _LOOKS, _DRAGGED_STIFFER, _DRAGGED_STIFFEST = 10, 3, 4.0, 256.0
 #: Where points come to rest unfolded the condition is made this much stiffer, at most so often.
 _STIFFER, _STIFFENINGS = 4.0, 3
 #: What is not folded even then is made stiffer alone, this much, and so often: faint folds at grid edges that
@@ -33,12 +36,23 @@ class ConditionPull(Pull):
         self._term = fold_condition(net, weight)
         self._stiffness, self._times = np.ones(len(self._term.stencil)), 0
         self._shared = np.ones(len(self._term.stencil))  # on top of it, once the shape is exact
+        self._iterations, self._looks = 0, np.zeros(len(self._term.stencil), dtype=np.int64)
         self.unfolding = False
 
     def terms(self) -> list[Term]:
         if self._weight == 0:
             return []
         return [replace(self._term, weight=self._weight * self._stiffness * self._shared)]
+
+    def keep_up(self, x: FloatArray) -> bool:
+        """Every iteration of a drag: stiffer at points that stay unfolded. Whether any value has changed."""
+        self._iterations += 1
+        if self._iterations % _LOOK_EVERY or not self._may_stiffen(x):
+            return False
+        self._looks = np.where(self._folded(x), 0, self._looks + 1)
+        wanting = (self._looks >= _LOOKS) & (self._stiffness < _DRAGGED_STIFFEST)
+        self._stiffness = np.where(wanting, _DRAGGED_STIFFER * self._stiffness, self._stiffness)
+        return bool(wanting.any())
 
     def settle(self, x: FloatArray) -> bool:
         """Stiffer when some point is not folded, or so little that polishing could undo it."""
@@ -81,9 +95,7 @@ class ConditionPull(Pull):
         """All points while some are wanting (n,), later only these; whether anything was done."""
         if not wanting.any() or self._times >= _STIFFENINGS + _ALONE_STIFFENINGS:
             return False
-        if self._times < _STIFFENINGS:
-            self._stiffness = self._stiffness * _STIFFER
-        else:
-            self._stiffness = np.where(wanting, self._stiffness * _ALONE_STIFFER, self._stiffness)
+        stiffer = _STIFFER if self._times < _STIFFENINGS else np.where(wanting, _ALONE_STIFFER, 1.0)
+        self._stiffness = self._stiffness * stiffer
         self._times += 1
         return True

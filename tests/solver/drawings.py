@@ -84,6 +84,15 @@ def closed_circle() -> solver.CreasePattern:
     return square_with(circle((0.47, 0.53), 0.3))
 
 
+def swirl(arms: int) -> solver.CreasePattern:
+    """Spirals around the middle, both ends of each on the paper."""
+    t = np.linspace(0.15, 1.0, 30)
+    turns = np.linspace(0.0, 2 * np.pi, arms, endpoint=False)[:, None] + 2 * t
+    return square_with(
+        *(solver.Crease(points=0.5 + 0.48 * np.column_stack([t * np.cos(a), t * np.sin(a)])) for a in turns)
+    )
+
+
 def free_end() -> solver.CreasePattern:
     return square_with(curve([(0, 0.45), (0.6, 0.52)], 0.08))
 

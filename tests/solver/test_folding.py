@@ -109,6 +109,23 @@ def test_two_arcs_compressed_along_themselves_fold_everywhere(drawings: ModuleTy
     assert m.folded.all()
 
 
+def test_a_drag_folds_on_its_way_what_it_left_unfolded(drawings: ModuleType) -> None:
+    """Not only once it rests: a hand that drags on would wait for that in vain."""
+    net = solver.build_net(drawings.swirl(9), 16)
+    model = solver.FoldModel(net)
+    left = []
+    for part in np.linspace(0.0, 1.0, 24)[1:]:
+        model.set_handles(
+            [solver.Handle(at=(x, 0.0), target=(x - 0.12 * part * np.sign(x - 0.5), 0.12 * part, 0.28 * part))
+             for x in (0.0, 1.0)]
+        )  # fmt: skip
+        model.advance(5)
+        left.append(1 - solver.measure(net, model.positions).folded_part)
+    assert model.status is solver.Status.RUNNING
+    assert max(left) > 0
+    assert left[-1] == 0
+
+
 def test_handles_and_angle_work_together(drawings: ModuleType) -> None:
     pattern = drawings.one_arc()
     held = [
