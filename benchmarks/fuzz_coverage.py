@@ -57,18 +57,7 @@ def breed(door: str, seconds: int, seed: int) -> None:
 
     def attempt(data: bytes) -> None:
         """One input. What is wrong is kept, once for each place, and the breeding goes on."""
-        said, start = "", time.process_time()
-        signal.setitimer(signal.ITIMER_VIRTUAL, HUNG)
-        try:
-            fuzz_run.attempt(fuzz_inputs.DOORS[door], data, scratch)
-        except fuzz_run.HungError:
-            said = "hang"
-        except Exception as error:
-            said = fuzz_run.said_of(error)
-        finally:
-            signal.setitimer(signal.ITIMER_VIRTUAL, 0)
-        if not said and time.process_time() - start > 3 * SLOW:
-            said = "slow"
+        said, _ = fuzz_run.tried(fuzz_inputs.DOORS[door], data, scratch, 3 * SLOW, HUNG)
         if said and said not in known:
             known.add(said)
             (OUT / f"bred-{door}-{len(known)}.txt").write_bytes(data)

@@ -61,6 +61,25 @@ def attempt(door: Door, data: bytes, folder: Path) -> None:
         raise AssertionError(f"wrote {strange}")
 
 
+def tried(door: Door, data: bytes, folder: Path, slow: float, hung: float) -> tuple[str, float]:
+    """What is wrong with data, "" for nothing, and the processor time it took, seconds; given up after ``hung``.
+
+    ``alarm`` has to be the handler of SIGVTALRM.
+    """
+    start, said = time.process_time(), ""
+    signal.setitimer(signal.ITIMER_VIRTUAL, hung)
+    try:
+        attempt(door, data, folder)
+    except HungError:
+        said = "hang"
+    except Exception as error:
+        said = said_of(error)
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+    spent = time.process_time() - start
+    return said or ("slow" if spent > slow else ""), spent
+
+
 def said_of(error: Exception) -> str:
     """What an error is and where it comes from."""
     place = traceback.extract_tb(error.__traceback__)[-1]
@@ -94,20 +113,8 @@ def run(doors: Mapping[str, Door], module: str, words: str) -> int:
             # Written before it is tried: an input that ends the process is still there.
             kept = OUT / f"{seed}-{name}.txt"
             kept.write_bytes(data)
-            start, said = time.process_time(), ""
-            signal.setitimer(signal.ITIMER_VIRTUAL, HUNG)
-            try:
-                attempt(doors[name], data, folders[name])
-            except HungError:
-                said = "hang"
-            except Exception as error:
-                said = said_of(error)
-            finally:
-                signal.setitimer(signal.ITIMER_VIRTUAL, 0)
-            spent = time.process_time() - start
+            said, spent = tried(doors[name], data, folders[name], SLOW, HUNG)
             slowest = max(slowest, (spent, f"{name} {seed}"))
-            if not said and spent > SLOW:
-                said = "slow"
             if said:
                 wrong[f"{name}: {said}"] += 1
                 print(f"seed {seed}  {name}: {said} ({spent:.1f} s)", flush=True)
