@@ -348,20 +348,19 @@ class FoldModel:
         problem.replace({term.name: term for term in pull.terms()})
 
     def _keep_up(self, problem: Problem) -> None:
-        """Fold what a drag leaves unfolded while it goes on, where nothing but handles pulls.
+        """Fold what a drag leaves unfolded while it is on its way, where nothing but handles pulls.
 
         With anything else it decides which of several folds a paper takes, and the wrong one may end stuck: a sheet
         with two arcs that is glued to a ring does not close.
         """
-        alone = (
-            len(self._handles) and self._opening is None and self._drive.angle is None and not self._controlled()
-        )
-        if alone and self._condition.keep_up(self._state.x):
+        if not len(self._handles) or self._opening or self._drive.angle is not None or self._controlled():
+            self._condition.look_away()
+        elif self._stage == 0 and self._condition.keep_up(self._state.x):
             self._replace(problem, self._condition)
             self._merits = []  # of other weights
 
     def _controlled(self) -> bool:
-        """Whether the paper is told more than handles and an angle for all creases."""
+        """Whether the paper is told more than handles and an angle for all creases; a side is more."""
         return any(controls for controls, _ in self._at_work.values())
 
     def _move_targets(self, problem: Problem) -> bool:

@@ -86,8 +86,9 @@ def _weighted_cubics(knots: Array, weighted: Array, degree: int) -> Array:
     starts, lengths = knots[:-1], np.diff(knots)
     used = (lengths > 0) & (starts >= knots[degree]) & (starts < knots[len(weighted)])
     curve = BSpline(knots, weighted, degree)
-    # Taylor's coefficients of every span, highest power first.
-    powers = [curve(starts[used], nu=power) / float(factorial(power)) for power in range(degree, -1, -1)]
+    # Taylor's coefficients of every span, highest power first; around its middle high orders keep their digits.
+    middles = starts[used] + 0.5 * lengths[used]
+    powers = [curve(middles, nu=power) / float(factorial(power)) for power in range(degree, -1, -1)]
     return _hermite_cubics(np.array(powers), lengths[used])
 
 
@@ -116,7 +117,8 @@ def nurbs_knots(count: int, order: int, cyclic: bool, endpoint: bool, bezier: bo
 
 
 def _hermite_cubics(coefficients: Array, lengths: Array) -> Array:
-    """Cubics along weighted polynomials (order, pieces, 4), highest power first: as many as they need."""
+    """Cubics along weighted polynomials (order, pieces, 4), highest power of the distance from the middle of the
+    piece first: as many as they need."""
     parts, before = 1, np.inf
     while True:
         place, tangent = _evaluate(coefficients, lengths, 2 * parts)
@@ -132,7 +134,7 @@ def _hermite_cubics(coefficients: Array, lengths: Array) -> Array:
 
 def _evaluate(coefficients: Array, lengths: Array, parts: int) -> tuple[Array, Array]:
     """Places and derivatives by the share of the piece (pieces, parts + 1, 3)."""
-    at = np.linspace(0.0, 1.0, parts + 1)[None, :, None] * lengths[:, None, None]
+    at = np.linspace(-0.5, 0.5, parts + 1)[None, :, None] * lengths[:, None, None]
     value = np.zeros((len(lengths), parts + 1, 4))
     slope = np.zeros_like(value)
     for row in coefficients:

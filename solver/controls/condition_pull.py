@@ -14,9 +14,10 @@ from ..objectives.fold_condition import fold_condition
 from ..optimize.term import gather
 from .pull import Pull, Term
 
-#: In a drag points are looked at every so many iterations, and what is not folded so often in a row is made this
-#: much stiffer each time, up to the last.
-_LOOK_EVERY, _LOOKS, _DRAGGED_STIFFER, _DRAGGED_STIFFEST = 10, 3, 4.0, 256.0
+#: On the way of a drag points are looked at every so many iterations. From so many times in a row on, what is not
+#: folded is made this much stiffer at every look, up to the last. A paper that is nearer than this to flat, net
+#: units, is left alone: nothing is folded there yet, or any more.
+_LOOK_EVERY, _LOOKS, _DRAGGED_STIFFER, _DRAGGED_STIFFEST, _HARDLY_LIFTED = 10, 3, 4.0, 256.0, 0.1
 #: Where points come to rest unfolded the condition is made this much stiffer, at most so often.
 _STIFFER, _STIFFENINGS = 4.0, 3
 #: What is not folded even then is made stiffer alone, this much, and so often: faint folds at grid edges that
@@ -45,14 +46,24 @@ class ConditionPull(Pull):
         return [replace(self._term, weight=self._weight * self._stiffness * self._shared)]
 
     def keep_up(self, x: FloatArray) -> bool:
-        """Every iteration of a drag: stiffer at points that stay unfolded. Whether any value has changed."""
+        """Before every step on the way of a drag: stiffer at points that stay unfolded.
+
+        Whether any value has changed.
+        """
         self._iterations += 1
-        if self._iterations % _LOOK_EVERY or not self._may_stiffen(x):
+        if self._iterations % _LOOK_EVERY:
+            return False
+        if not self._may_stiffen(x) or off_plane(x) < _HARDLY_LIFTED:
+            self.look_away()
             return False
         self._looks = np.where(self._folded(x), 0, self._looks + 1)
         wanting = (self._looks >= _LOOKS) & (self._stiffness < _DRAGGED_STIFFEST)
         self._stiffness = np.where(wanting, _DRAGGED_STIFFER * self._stiffness, self._stiffness)
         return bool(wanting.any())
+
+    def look_away(self) -> None:
+        """Something else pulls now: what was seen on the way of a drag holds no longer."""
+        self._looks = np.zeros_like(self._looks)
 
     def settle(self, x: FloatArray) -> bool:
         """Stiffer when some point is not folded, or so little that polishing could undo it."""

@@ -22,8 +22,8 @@ MIN_SAMPLES = 16
 _STRAIGHT_SAMPLES = 2
 #: Points of a whole drawing. A drawing that needs more is not a crease pattern a net could carry.
 MAX_POINTS = 200_000
-#: Samples of a segment that needs more than a whole drawing may have.
-_TOO_MANY = MAX_POINTS + 1
+#: Samples of a segment that needs more than a whole drawing may have, without the one that it shares.
+_TOO_MANY = MAX_POINTS + 2
 #: A cubic this close to its chord (relative to the drawing) is a straight line drawn as a curve.
 STRAIGHT = 1e-9
 #: Allowed error of the cubics that stand for an arc, relative to the drawing's longer side.

@@ -184,7 +184,7 @@ def test_automatic_handles(drawing_module, square, add_crease):
 @pytest.mark.parametrize("cyclic", [False, True])
 @pytest.mark.parametrize("endpoint", [False, True])
 @pytest.mark.parametrize("bezier", [False, True])
-@pytest.mark.parametrize(("count", "order"), [(7, 4), (6, 4), (9, 3), (5, 5), (8, 2), (12, 6), (3, 4)])
+@pytest.mark.parametrize(("count", "order"), [(7, 4), (6, 4), (9, 3), (5, 5), (8, 2), (12, 6), (3, 4), (78, 40)])
 def test_nurbs(drawing_module, square, add_crease, cyclic, endpoint, bezier, count, order):
     random = np.random.default_rng(count + 10 * order)
 
