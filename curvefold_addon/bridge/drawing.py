@@ -29,6 +29,8 @@ Array = NDArray[np.float64]
 FLAT = 1e-3
 #: Scales along x and y that differ by more than this are uneven.
 EVEN = 1e-3
+#: What is nearer to the border than this is border, in snap tolerances.
+_ALONG_BORDER = 1e-3
 #: Modifiers that Blender always applies to control points; others only when they are told to.
 _ON_CONTROL_POINTS = {"HOOK", "SOFT_BODY", "MESH_DEFORM"}
 
@@ -66,7 +68,8 @@ def troubles(sheet: Any) -> tuple[Trouble, ...]:
 
 def sheet_size(sheet: Any) -> float:
     """The longer side of a sheet's border in its own coordinates; 0 when it has none."""
-    corners = [s.cubics.reshape(-1, 3) for s in read_strands(sheet.data) if len(s.cubics)]
+    strands = read_strands(sheet.data) if sheet.type == "CURVE" else []
+    corners = [s.cubics.reshape(-1, 3) for s in strands if len(s.cubics)]
     return float(np.ptp(np.vstack(corners)[:, :2], axis=0).max()) if corners else 0.0
 
 
@@ -128,6 +131,7 @@ class _Reading:
         self._sheet = sheet
         self._world = world_matrix(sheet)
         self._size = 0.0
+        self._inner = shapely.Polygon()  # the sheet without what is border
 
     def trouble(self, what: str, item: Any, place: Array | None) -> None:
         """``place`` (3,) in the sheet's coordinates."""
@@ -146,6 +150,8 @@ class _Reading:
         except solver.PatternError as error:
             raise solver.PatternError(error.message, element=sheet.name, place=error.where.place) from error
         shapely.prepare(polygon)
+        self._inner = polygon.buffer(-_ALONG_BORDER * _tolerance(polygon))
+        shapely.prepare(self._inner)
         drawn = drawing_objects.creases_of(sheet)
         folded = [item for item in drawn if item.curvefold.assignment != "F"]
         # A sheet without any crease is one on which nobody has drawn yet: no trouble.
@@ -244,8 +250,7 @@ class _Reading:
 
     def _is_on(self, sheet: shapely.Polygon, curve: Curve, item: Any, label: str) -> bool:
         """Whether there is something to fold; by the same measures as the net's."""
-        x0, y0, x1, y1 = sheet.bounds
-        tolerance = SNAP_TOLERANCE * max(x1 - x0, y1 - y0)
+        tolerance = _tolerance(sheet)
         points = np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points
         line = shapely.LineString(points)
         middle = np.array([*shapely.get_coordinates(line.interpolate(0.5, normalized=True))[0], 0.0])
@@ -254,12 +259,16 @@ class _Reading:
             return False
         if shapely.contains_properly(sheet, line):
             return True
+        # Enough of it lies well inside, mostly; what follows cuts a line at all places where it crosses itself.
+        segments = shapely.linestrings(np.stack([points[:-1], points[1:]], axis=1))
+        if shapely.length(segments[shapely.contains_properly(self._inner, segments)]).sum() >= tolerance:
+            return True
         # Crossing itself is allowed, and all parts are asked for, so that nothing has to be valid.
         inside = shapely.intersection(line, sheet)
         if inside.length < tolerance:
             self.trouble(f"{label} lies off the sheet and is left out", item, middle)
             return False
-        if shapely.difference(inside, sheet.boundary.buffer(1e-3 * tolerance)).length < tolerance:
+        if shapely.difference(inside, sheet.boundary.buffer(_ALONG_BORDER * tolerance)).length < tolerance:
             self.trouble(f"{label} runs along the border, where nothing can fold, and is left out", item, middle)
             return False
         return True
@@ -302,6 +311,11 @@ class _Reading:
             return sample(Subpath(segments, strand.closed), self._size, MAX_POINTS)
         except solver.PatternError as error:
             raise solver.PatternError(error.message, element=item.name) from error
+
+
+def _tolerance(sheet: shapely.Polygon) -> float:
+    x0, y0, x1, y1 = sheet.bounds
+    return SNAP_TOLERANCE * max(x1 - x0, y1 - y0)
 
 
 def _sampled_already(lines: Array, closed: bool) -> Curve | None:

@@ -173,6 +173,18 @@ def test_a_shared_curve_is_not_changed_for_others(sheet):
     assert tuple(twin.data.splines[0].bezier_points[0].co) == before
 
 
+@pytest.mark.parametrize("make", ["draw_crease", "make_crease"])
+def test_a_sheet_that_was_converted_to_a_mesh_says_so(extension, sheet, make):
+    item = bezier_on(sheet, 0.0)
+    select(sheet)
+    bpy.ops.object.convert(target="MESH")
+    assert sheet.type == "MESH"
+    select(item, sheet)
+    assert getattr(bpy.ops.curvefold, make)() == {"FINISHED"}
+    troubles = extension("curvefold_addon.bridge.drawing").troubles(sheet)
+    assert any("it is no longer a curve, so it has no border" in trouble.sentence for trouble in troubles)
+
+
 def test_a_constrained_curve_keeps_its_constraint(read, sheet):
     item = bezier_on(sheet, 0.0)
     target = bpy.data.objects.new("Target", None)
