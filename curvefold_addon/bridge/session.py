@@ -41,6 +41,7 @@ def stop() -> None:
     _ends.clear()
     net_of.cache_clear()
     drawn_of.cache_clear()
+    state.pattern_of.cache_clear()
 
 
 @lru_cache(maxsize=_KEPT_NETS)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -62,6 +63,7 @@ def source_of(pattern: CreasePattern, resolution: int, scale: float = 1.0) -> So
     return Source(json.dumps(_pattern_data(pattern), default=_plain), int(resolution), float(scale))
 
 
+@lru_cache(maxsize=1)  # a net and its creases as drawn are asked for one after the other
 def pattern_of(source: Source) -> CreasePattern:
     """The drawing again, to the last bit."""
     data = json.loads(source.pattern)
