@@ -72,7 +72,7 @@ def tried(door: Door, data: bytes, folder: Path, slow: float, hung: float) -> tu
         attempt(door, data, folder)
     except HungError:
         said = "hang"
-    except Exception as error:
+    except Exception as error:  # of whatever kind: it is what is looked for
         said = said_of(error)
     finally:
         signal.setitimer(signal.ITIMER_VIRTUAL, 0)

@@ -15,7 +15,7 @@ import shapely
 from numpy.typing import NDArray
 
 from ... import solver
-from ...solver.pattern.arrangement import SNAP_TOLERANCE, sheet_polygon
+from ...solver.pattern.arrangement import sheet_polygon, snap_tolerance
 from ...solver.pattern.svg_border import JOIN, outer_rings
 from ...solver.pattern.svg_curves import MAX_POINTS, Curve, Segment, Subpath, sample
 from . import drawing_objects
@@ -150,7 +150,7 @@ class _Reading:
         except solver.PatternError as error:
             raise solver.PatternError(error.message, element=sheet.name, place=error.where.place) from error
         shapely.prepare(polygon)
-        self._inner = polygon.buffer(-_ALONG_BORDER * _tolerance(polygon))
+        self._inner = polygon.buffer(-_ALONG_BORDER * snap_tolerance(polygon))
         shapely.prepare(self._inner)
         drawn = drawing_objects.creases_of(sheet)
         folded = [item for item in drawn if item.curvefold.assignment != "F"]
@@ -250,7 +250,7 @@ class _Reading:
 
     def _is_on(self, sheet: shapely.Polygon, curve: Curve, item: Any, label: str) -> bool:
         """Whether there is something to fold; by the same measures as the net's."""
-        tolerance = _tolerance(sheet)
+        tolerance = snap_tolerance(sheet)
         points = np.vstack([curve.points, curve.points[:1]]) if curve.closed else curve.points
         line = shapely.LineString(points)
         middle = np.array([*shapely.get_coordinates(line.interpolate(0.5, normalized=True))[0], 0.0])
@@ -311,11 +311,6 @@ class _Reading:
             return sample(Subpath(segments, strand.closed), self._size, MAX_POINTS)
         except solver.PatternError as error:
             raise solver.PatternError(error.message, element=item.name) from error
-
-
-def _tolerance(sheet: shapely.Polygon) -> float:
-    x0, y0, x1, y1 = sheet.bounds
-    return SNAP_TOLERANCE * max(x1 - x0, y1 - y0)
 
 
 def _sampled_already(lines: Array, closed: bool) -> Curve | None:

@@ -62,7 +62,7 @@ class ConditionPull(Pull):
         return bool(wanting.any())
 
     def look_away(self) -> None:
-        """Something else pulls now: what was seen on the way of a drag holds no longer."""
+        """What was seen on the way of a drag so far holds no longer."""
         self._looks = np.zeros_like(self._looks)
 
     def settle(self, x: FloatArray) -> bool:

@@ -90,6 +90,16 @@ def _invalid_place(polygon: Polygon) -> tuple[float, ...] | None:
     return tuple(float(word) for word in reason.split("[")[1].rstrip("]").split())
 
 
+def snap_tolerance(sheet: Polygon) -> float:
+    """How near is joined on this sheet, and how short is left out; its units."""
+    return SNAP_TOLERANCE * _longer_side(sheet)
+
+
+def _longer_side(sheet: Polygon) -> float:
+    x0, y0, x1, y1 = sheet.bounds
+    return float(max(x1 - x0, y1 - y0))
+
+
 def arrange(
     sheet: Polygon,
     lines: list[FloatArray],
@@ -103,9 +113,7 @@ def arrange(
     locate  turns (N,2) places into the user's coordinates, for notes
     Raises PatternError when no crease is left on the sheet.
     """
-    x0, y0, x1, y1 = sheet.bounds
-    size = max(x1 - x0, y1 - y0)
-    tolerance, node = SNAP_TOLERANCE * size, NODE_TOLERANCE * size
+    tolerance, node = snap_tolerance(sheet), NODE_TOLERANCE * _longer_side(sheet)
     notes: list[str] = []
     parts = _trim(sheet, lines, labels, tolerance, notes)
     if not parts:
@@ -154,7 +162,7 @@ def _overlaps(line: LineString, border: LineString) -> bool:
 
 def _lines_of(geometry: shapely.Geometry) -> shapely.MultiLineString:
     """The line parts of any geometry."""
-    parts = shapely.get_parts(shapely.get_parts(geometry))
+    parts = shapely.get_parts(shapely.get_parts(geometry))  # a collection may hold lines of many parts
     lines = shapely.get_type_id(parts) == shapely.GeometryType.LINESTRING
     return shapely.multilinestrings(parts[lines & (shapely.length(parts) > 0)])
 
