@@ -33,7 +33,8 @@ from .net.build import build_net
 from .net.piecewise_dog import PiecewiseDog
 from .net.render_map import RenderMap
 from .pattern.crease_pattern import Crease, CreasePattern
-from .pattern.reading import read_pattern
+from .pattern.read_options import ReadOptions
+from .pattern.reading import read_pattern, read_patterns
 from .rulings import RulingKind, Rulings, rulings
 from .sheet_mesh import SheetMesh
 from .verify import Fault, Verification, verify
@@ -63,6 +64,7 @@ __all__ = [
     "PatternError",
     "PiecewiseDog",
     "ReadError",
+    "ReadOptions",
     "RenderMap",
     "RulingKind",
     "Rulings",
@@ -80,6 +82,7 @@ __all__ = [
     "read_handles",
     "read_mesh",
     "read_pattern",
+    "read_patterns",
     "rulings",
     "verify",
     "verify_mesh",

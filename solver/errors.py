@@ -27,7 +27,10 @@ class Where:
 
 
 class CurvefoldError(Exception):
-    """Base of all errors that a user can cause. ``str()`` is one sentence that says where and what."""
+    """Base of all errors that a user can cause. ``str()`` is one sentence that says where and what.
+
+    notes: what was decided before it went wrong, one sentence each, as far as that helps to understand it
+    """
 
     def __init__(
         self,
@@ -36,9 +39,11 @@ class CurvefoldError(Exception):
         file: str | None = None,
         element: str | None = None,
         place: tuple[float, ...] | None = None,
+        notes: tuple[str, ...] = (),
     ) -> None:
         self.message = message
         self.where = Where(file, element, place)
+        self.notes = notes
         super().__init__(message)
 
     def __str__(self) -> str:
@@ -49,7 +54,16 @@ class CurvefoldError(Exception):
 
     def in_file(self, file: str) -> CurvefoldError:
         """The same error, of the same type, naming ``file``."""
-        return type(self)(self.message, file=file, element=self.where.element, place=self.where.place)
+        return type(self)(
+            self.message, file=file, element=self.where.element, place=self.where.place, notes=self.notes
+        )
+
+    def with_notes(self, notes: tuple[str, ...]) -> CurvefoldError:
+        """The same error, of the same type, with ``notes`` before its own."""
+        where = self.where
+        return type(self)(
+            self.message, file=where.file, element=where.element, place=where.place, notes=(*notes, *self.notes)
+        )
 
 
 class ReadError(CurvefoldError):

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from ... import solver
 from ...solver.pattern.arrangement import sheet_polygon, snap_tolerance
-from ...solver.pattern.svg_border import JOIN, outer_rings
-from ...solver.pattern.svg_curves import MAX_POINTS, Curve, Segment, Subpath, sample
+from ...solver.pattern.rings import JOIN, outer_rings
+from ...solver.pattern.segments import MAX_POINTS, Curve, Segment, Subpath, sample
 from . import drawing_objects
 from .mesh import metres_per_unit
 from .placing import matrix_on, world_matrix

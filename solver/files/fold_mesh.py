@@ -12,7 +12,7 @@ from ..arrays import FloatArray
 from ..errors import CurvefoldError, ReadError
 from ..pattern.fold_file_frames import FoldFile, choose_frame, parse_fold
 from ..pattern.fold_file_values import check_vertices, coordinates, counted_from, index_rows
-from ..pattern.svg_xml import read_source
+from ..pattern.source import read_source
 from ..sheet_mesh import SheetMesh
 
 

@@ -9,7 +9,7 @@ from typing import IO, Any
 import numpy as np
 
 from ..errors import CurvefoldError, ReadError
-from ..pattern.svg_xml import read_source
+from ..pattern.source import read_source
 from ..sheet_mesh import SheetMesh
 
 #: Vertices, texture coordinates or corners of faces of a file; each takes some 100 bytes while it is read.

@@ -101,6 +101,14 @@ class CreasePattern:
         object.__setattr__(self, "unit_mm", None if unit_mm is None else float(unit_mm))
         object.__setattr__(self, "notes", tuple(notes))
 
+    def named(self, name: str, unit_mm: float | None) -> CreasePattern:
+        """The same drawing with another name and unit."""
+        return CreasePattern(self.boundary, self.holes, self.creases, name, unit_mm, self.notes)
+
+    def noted(self, note: str) -> CreasePattern:
+        """The same drawing with one more note, the first."""
+        return CreasePattern(self.boundary, self.holes, self.creases, self.name, self.unit_mm, (note, *self.notes))
+
     def crease_label(self, index: int) -> str:
         """How messages call crease ``index``: its number from 1, and its name when it has one."""
         name = self.creases[index].name

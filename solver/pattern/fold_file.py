@@ -17,7 +17,8 @@ from .crease_pattern import CreasePattern
 from .fold_file_frames import choose_frame, parse_fold
 from .fold_file_graph import edge_graph
 from .fold_file_sheet import make_pattern
-from .svg_xml import read_source
+from .read_options import ReadOptions
+from .source import read_source
 
 #: Millimetres in one frame_unit (FOLD 1.2); "unit" and what is not listed here say nothing.
 _UNIT_MM = {"in": 25.4, "pt": 25.4 / 72, "m": 1000.0, "cm": 10.0, "mm": 1.0, "um": 1e-3, "nm": 1e-6}
@@ -26,10 +27,12 @@ _UNIT_MM = {"in": 25.4, "pt": 25.4 / 72, "m": 1000.0, "cm": 10.0, "mm": 1.0, "um
 _SMALL, _UNIT_OF_SMALL = 10.0, 100.0
 
 
-def read_fold(source: str | os.PathLike[str] | IO[Any]) -> CreasePattern:
-    """The crease pattern in a FOLD file: a path, or an open file (text or bytes).
+def read_fold(
+    source: str | os.PathLike[str] | IO[Any], options: ReadOptions | None = None
+) -> tuple[CreasePattern, ...]:
+    """The crease patterns in a FOLD file, one a sheet: a path, or an open file (text or bytes).
 
-    ``notes`` of the result say which frame was read, what its edges became and what was left out. Raises ReadError
+    ``notes`` of the results say which frame was read, what its edges became and what was left out. Raises ReadError
     when this is not a readable FOLD file, PatternError when it holds no drawing; both name the file if it is known.
     """
     data, name = read_source(source)
@@ -42,7 +45,7 @@ def read_fold(source: str | os.PathLike[str] | IO[Any]) -> CreasePattern:
         if unit_mm is None and graph.size < _SMALL:
             unit_mm = _UNIT_OF_SMALL
             notes.append(f"the file gives no unit, so that one is taken for {unit_mm:g} mm")
-        return make_pattern(graph, unit_mm, notes)
+        return (make_pattern(graph, unit_mm, notes),)
     except CurvefoldError as error:
         raise (error if name is None else error.in_file(name)) from error
     except (ArithmeticError, ValueError, IndexError, MemoryError, shapely.errors.ShapelyError) as error:

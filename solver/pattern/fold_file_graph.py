@@ -24,8 +24,8 @@ from .fold_file_values import (
     letters,
     letters_of_angles,
 )
-from .svg_border import JOIN, MAX_NEAR
-from .svg_curves import MAX_POINTS, STRAIGHT
+from .rings import JOIN, MAX_NEAR
+from .segments import MAX_POINTS, STRAIGHT
 
 #: Letters of edges that are lines of the drawing; the others are lines of a mesh.
 DRAWN = ("B", "C", "M", "V", "U")

@@ -16,9 +16,9 @@ from .crease_pattern import Crease, CreasePattern
 from .fold_file_chains import Path, joined_as_creases, joined_by_pairs, without_straight
 from .fold_file_graph import DRAWN, EdgeGraph
 from .fold_file_values import count_edges
-from .svg_border import JOIN, Ring, curve_line, outer_rings, share_inside, touching_groups
-from .svg_curves import MAX_POINTS, Curve
-from .svg_sheet import MAX_HOLES, MAX_STROKES
+from .rings import JOIN, Ring, curve_line, outer_rings, share_inside, touching_groups
+from .segments import MAX_POINTS, Curve
+from .sheets import MAX_HOLES, MAX_STROKES
 
 #: How much of the creases (by length) the border must hold.
 _SHARE = 0.5

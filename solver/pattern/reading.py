@@ -5,18 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from ..errors import CurvefoldError, ReadError
+from ..errors import CurvefoldError, PatternError, ReadError
 from .crease_pattern import CreasePattern
 from .fold_file import read_fold
+from .read_options import ReadOptions
 from .svg import read_svg
 
-#: Suffix -> reader. A new format is one line here.
-READERS: dict[str, Callable[[str | Path], CreasePattern]] = {".svg": read_svg, ".fold": read_fold}
+#: Suffix -> reader of all sheets of a file. A new format is one line here.
+READERS: dict[str, Callable[[str | Path, ReadOptions], tuple[CreasePattern, ...]]] = {
+    ".svg": read_svg,
+    ".fold": read_fold,
+}
 
 
-def read_pattern(path: str | Path) -> CreasePattern:
-    """The crease pattern in a file, named after it. Raises ReadError and PatternError, both with the file."""
-    path = Path(path)
+def read_patterns(path: str | Path, options: ReadOptions | None = None) -> tuple[CreasePattern, ...]:
+    """All sheets in a file, in its order, named after it; "name 1", "name 2", ... where there are several.
+
+    Just one where ``options.sheet`` chooses it. Raises ReadError and PatternError, both with the file and with
+    the notes that were made so far.
+    """
+    path, options = Path(path), options or ReadOptions()
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise ReadError(
@@ -24,14 +32,34 @@ def read_pattern(path: str | Path) -> CreasePattern:
             file=str(path),
         )
     try:
-        pattern = reader(path)
+        patterns = reader(path, options)
+        if options.sheet is not None and options.sheet > len(patterns):
+            held = "1 sheet" if len(patterns) == 1 else f"{len(patterns)} sheets"
+            raise PatternError(f"it has {held}, and sheet {options.sheet} is asked for")
     except CurvefoldError as error:
         raise error.in_file(str(path)) from error
-    return CreasePattern(
-        pattern.boundary,
-        pattern.holes,
-        pattern.creases,
-        path.stem,
-        pattern.unit_mm,
-        pattern.notes,
-    )
+    stem = _readable(path.stem)
+    several = len(patterns) > 1
+    named = [
+        pattern.named(f"{stem} {number}" if several else stem, options.unit_mm(pattern.unit_mm))
+        for number, pattern in enumerate(patterns, 1)
+    ]
+    return tuple(named) if options.sheet is None else (named[options.sheet - 1],)
+
+
+def read_pattern(path: str | Path, options: ReadOptions | None = None) -> CreasePattern:
+    """The crease pattern in a file; of several sheets the one that ``options`` choose, else the first, with a note.
+
+    Raises as ``read_patterns``.
+    """
+    options = options or ReadOptions()
+    patterns = read_patterns(path, options)
+    if len(patterns) == 1:
+        return patterns[0]
+    note = f"the file has {len(patterns)} sheets: this is the first one (choose another one by its number)"
+    return patterns[0].noted(note)
+
+
+def _readable(name: str) -> str:
+    """A name of a file as text: bytes that are no UTF-8 become question marks."""
+    return name.encode("utf-8", "surrogateescape").decode("utf-8", "replace")

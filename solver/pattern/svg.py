@@ -1,8 +1,8 @@
 """SVG drawings -> crease patterns.
 
 Units are the drawing's own (its viewBox), y is turned up about the viewBox: (x, y) -> (x, ymin + ymax - y).
-The steps: ``svg_xml`` reads safely, ``svg_walk`` finds what is drawn, ``svg_curves`` samples it,
-``svg_style`` says what each stroke means alone and ``svg_sheet`` what all mean together.
+The steps: ``svg_xml`` reads safely, ``svg_walk`` finds what is drawn, ``segments`` samples it,
+``meaning`` says what each stroke means alone and ``sheets`` what all mean together.
 """
 
 from __future__ import annotations
@@ -14,20 +14,24 @@ import shapely
 
 from ..errors import CurvefoldError, PatternError
 from .crease_pattern import CreasePattern
-from .svg_sheet import make_pattern
+from .read_options import ReadOptions
+from .sheets import make_pattern
+from .source import read_source
 from .svg_walk import read_drawing
-from .svg_xml import parse_svg_tree, read_source
+from .svg_xml import parse_svg_tree
 
 
-def read_svg(source: str | os.PathLike[str] | IO[Any]) -> CreasePattern:
-    """The crease pattern in an SVG file: a path, or an open file (text or bytes).
+def read_svg(
+    source: str | os.PathLike[str] | IO[Any], options: ReadOptions | None = None
+) -> tuple[CreasePattern, ...]:
+    """The crease patterns in an SVG file, one a sheet: a path, or an open file (text or bytes).
 
-    ``notes`` of the result say what every stroke became and why. Raises ReadError when this is not a readable
+    ``notes`` of the results say what every stroke became and why. Raises ReadError when this is not a readable
     SVG file, PatternError when its drawing is not a crease pattern; both name the file if it is known.
     """
     data, name = read_source(source)
     try:
-        return make_pattern(read_drawing(parse_svg_tree(data)))
+        return (make_pattern(read_drawing(parse_svg_tree(data))),)
     except CurvefoldError as error:
         raise (error if name is None else error.in_file(name)) from error
     except (

@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import svgelements
 
-from .svg_curves import MAX_POINTS, Segment, Subpath, arc, cubic, line, quadratic
+from .segments import MAX_POINTS, Segment, Subpath, arc, cubic, line, quadratic
 from .svg_values import NUMBER, Length, SvgValueError, finite, parse_length, parse_numbers
 
 #: Length of an attribute, its direction ("x", "y" or "" for neither) -> pixels.

@@ -10,8 +10,8 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import PatternError, ReadError
+from .segments import MAX_POINTS, Subpath
 from .svg_css import INHERITED, Stylesheet
-from .svg_curves import MAX_POINTS, Subpath
 from .svg_shapes import SHAPES, shape_subpaths
 from .svg_values import (
     MM_PER_PIXEL,

@@ -6,13 +6,9 @@ to stop at a depth or a count.
 
 from __future__ import annotations
 
-import os
-import stat
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
-from typing import IO, Any
 from xml.parsers import expat
 
 from ..errors import ReadError
@@ -21,8 +17,6 @@ SVG_NAMESPACE = "http://www.w3.org/2000/svg"
 XLINK_NAMESPACE = "http://www.w3.org/1999/xlink"
 INKSCAPE_NAMESPACE = "http://www.inkscape.org/namespaces/inkscape"
 
-#: A drawing of this size is not a crease pattern; parsing it would take minutes and gigabytes.
-MAX_BYTES = 64 * 1024 * 1024
 #: All XML elements of a file, drawn or not (metadata, gradients, text).
 MAX_XML_ELEMENTS = 200_000
 #: Nesting of XML elements; real drawings stay below 30, and each level is a Python call while drawing.
@@ -64,41 +58,6 @@ class Node:
             node = stack.pop()
             yield node
             stack.extend(reversed(node.children))
-
-
-def read_source(source: str | os.PathLike[str] | IO[Any]) -> tuple[bytes | str, str | None]:
-    """The text of a path or an open file, and the file's name if known. Raises ReadError."""
-    if isinstance(source, (str, os.PathLike)):
-        path = Path(source)
-        try:
-            status = path.stat()
-            if not stat.S_ISREG(status.st_mode):
-                raise ReadError("this is not a file", file=str(path))
-            if status.st_size > MAX_BYTES:
-                raise _too_large(status.st_size, str(path))
-            with open(path, "rb") as file:
-                data: bytes | str = file.read(MAX_BYTES + 1)
-        except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or str(error)
-            raise ReadError(f"the file cannot be read ({reason})", file=str(path)) from error
-        name: str | None = str(path)
-    else:
-        attribute = getattr(source, "name", None)
-        name = attribute if isinstance(attribute, str) else None
-        try:
-            data = source.read(MAX_BYTES + 1)
-        except (OSError, ValueError) as error:
-            raise ReadError(f"the file cannot be read ({error})", file=name) from error
-    if len(data) > MAX_BYTES:
-        raise _too_large(len(data), name)
-    return data, name
-
-
-def _too_large(size: int, file: str | None) -> ReadError:
-    return ReadError(
-        f"the file has {size / 2**20:.0f} MB, and drawings above {MAX_BYTES / 2**20:.0f} MB are not read",
-        file=file,
-    )
 
 
 def parse_svg_tree(data: bytes | str) -> Node:

@@ -58,7 +58,7 @@ def drawing(lines: Sequence[tuple[str, Any]], **more: Any) -> dict[str, Any]:
 
 
 def read(content: Any) -> CreasePattern:
-    return read_fold(io.StringIO(content if isinstance(content, str) else json.dumps(content)))
+    return read_fold(io.StringIO(content if isinstance(content, str) else json.dumps(content)))[0]
 
 
 def letters(pattern: CreasePattern) -> str:
@@ -133,7 +133,7 @@ def test_y_is_up_and_the_place_stays() -> None:
 def test_bytes_of_every_encoding() -> None:
     text = json.dumps(cross(frame_title="\u6298"), ensure_ascii=False)
     for data in (text.encode("utf-8"), b"\xef\xbb\xbf" + text.encode(), text.encode("utf-16")):
-        assert letters(read_fold(io.BytesIO(data))) == "VM"
+        assert letters(read_fold(io.BytesIO(data))[0]) == "VM"
 
 
 # ---- letters

@@ -26,7 +26,7 @@ HEAD = (
 
 
 def read(body: str, attributes: str = 'viewBox="0 0 100 100"') -> CreasePattern:
-    return read_svg(io.StringIO(f"<svg {HEAD} {attributes}>{body}</svg>"))
+    return read_svg(io.StringIO(f"<svg {HEAD} {attributes}>{body}</svg>"))[0]
 
 
 def letters(pattern: CreasePattern) -> str:
@@ -750,7 +750,7 @@ def test_other_kinds_of_files_name_what_is_read(tmp_path: Path) -> None:
 
 
 def test_external_references_are_ignored() -> None:
-    pattern = read_svg(
+    [pattern] = read_svg(
         io.BytesIO(
             b'<?xml version="1.0"?><!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://127.0.0.1:9/x.dtd">'
             + f'<svg {HEAD}>{SQUARE}{RED_LINE}<use href="other.svg#a"/></svg>'.encode()
@@ -764,7 +764,7 @@ def test_encodings(encoding: str) -> None:
     name = "utf-8" if encoding == "utf-8-sig" else encoding
     line = '<path id="é" d="M9 0v99" stroke="red"/>'
     text = f'<?xml version="1.0" encoding="{name}"?><svg {HEAD}>{SQUARE}{line}</svg>'
-    assert read_svg(io.BytesIO(text.encode(encoding))).creases[0].name == "é"
+    assert read_svg(io.BytesIO(text.encode(encoding)))[0].creases[0].name == "é"
 
 
 def test_bombs_are_refused() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solver.errors import PatternError
-from solver.pattern.svg_curves import MAX_POINTS, SAGITTA, Segment, Subpath, arc, cubic, line, sample
+from solver.pattern.segments import MAX_POINTS, SAGITTA, Segment, Subpath, arc, cubic, line, sample
 
 FAR = 1e6  # times the drawing
 

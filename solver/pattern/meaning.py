@@ -4,31 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
-from enum import Enum
 
+from .stroke import Decision, Role
 from .svg_values import Colour
 from .svg_walk import Drawn
-
-
-class Role(Enum):
-    """What a stroke is. The value is how notes call it."""
-
-    MOUNTAIN = "mountain crease"
-    VALLEY = "valley crease"
-    CREASE = "unassigned crease"
-    BORDER = "border"
-    HOLE = "hole"
-    CUT = "cut"
-    FACET = "facet line, left out"
-    DARK = "border, hole or unassigned crease"  # black and nothing else to go by
-    PALE = "auxiliary line"  # grey and nothing else to go by
-
-
-#: Roles that are creases whatever else is in the drawing.
-CREASE_ROLES = frozenset({Role.MOUNTAIN, Role.VALLEY, Role.CREASE})
-#: Roles that are edges of the paper whatever else is in the drawing.
-EDGE_ROLES = frozenset({Role.BORDER, Role.HOLE, Role.CUT})
 
 #: Less colour than this is grey. Illustrator's rich black #231F20 has 0.016, a pale pink #FFD0D0 0.18.
 MIN_CHROMA = 0.12
@@ -62,15 +41,6 @@ _NOT_WORDS = frozenset({"cute", "outliner", "folder", "folders", "guided"})
 _SPLIT = re.compile(r"[^\W\d_]+")
 _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _ESCAPE = re.compile(r"_x([0-9A-Fa-f]{2,4})_")  # Illustrator's way to write a blank in an id
-
-
-@dataclass(frozen=True)
-class Decision:
-    """The role of one stroke and the evidence: ``why`` is "hue", "class", "group or layer name", ..."""
-
-    role: Role
-    why: str
-    detail: str
 
 
 def classify(shape: Drawn) -> Decision:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.pattern.svg_border import outer_rings
-from solver.pattern.svg_curves import Curve
+from solver.pattern.rings import outer_rings
+from solver.pattern.segments import Curve
 
 
 def test_a_line_that_goes_back_and_forth_on_itself_is_no_border() -> None:

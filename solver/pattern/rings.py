@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from ..arrays import FloatArray, IntArray
 from ..errors import PatternError
-from .svg_curves import Curve
+from .segments import Curve
 
 #: Ends closer than this, relative to the drawing's longer side, are joined into one outline.
 JOIN = 1e-4

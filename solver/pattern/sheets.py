@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import shapely
 
 from ..errors import PatternError
 from .crease_pattern import Crease, CreasePattern
-from .svg_border import JOIN, Ring, curve_line, outer_rings, share_inside, touching_groups
-from .svg_curves import MAX_POINTS, Curve, bounds, sample
-from .svg_style import CREASE_ROLES, EDGE_ROLES, Decision, Role, classify
+from .meaning import classify
+from .rings import JOIN, Ring, curve_line, outer_rings, share_inside, touching_groups
+from .segments import MAX_POINTS, Curve, bounds, sample
+from .stroke import CREASE_ROLES, EDGE_ROLES, Role, Stroke
 from .svg_walk import Drawing, Drawn
 
 #: How much of the creases (by length) a closed outline must hold to be the border. Strokes that say they are
@@ -30,17 +31,6 @@ MAX_STROKES = 20_000
 MAX_HOLES = 1_000
 
 _LETTERS = {Role.MOUNTAIN: "M", Role.VALLEY: "V"}
-
-
-@dataclass(frozen=True, eq=False)
-class _Stroke:
-    """One sampled subpath with what is thought of it; ``fate`` is what became of it, for the notes."""
-
-    curve: Curve
-    decision: Decision
-    name: str
-    opacity: float
-    fate: str = ""
 
 
 def make_pattern(drawing: Drawing) -> CreasePattern:
@@ -61,7 +51,7 @@ class _Sheet:
         if not self._size > 0.0:
             raise PatternError("the drawing has no size: all its lines are one point")
         self._tolerance = JOIN * self._size
-        self._strokes: list[_Stroke] = []
+        self._strokes: list[Stroke] = []
         budget = MAX_POINTS
         for shape in stroked:
             decision = classify(shape)
@@ -71,7 +61,7 @@ class _Sheet:
                 name = f"{identity} part {part}" if identity and part else identity
                 if len(self._strokes) == MAX_STROKES:
                     raise PatternError(f"the drawing has more than {MAX_STROKES:,} strokes")
-                self._strokes.append(_Stroke(curve, decision, name, shape.opacity))
+                self._strokes.append(Stroke(curve, decision, name, shape.opacity))
         if not self._strokes:
             raise PatternError("the drawing has no line: all its strokes have no length")
         #: Whether anything says "I am a crease"; otherwise black lines are the creases.

@@ -1,0 +1,49 @@
+"""A line of a drawing, whatever its format: its curve, and what it is thought to mean."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from .segments import Curve
+
+
+class Role(Enum):
+    """What a stroke is. The value is how notes call it."""
+
+    MOUNTAIN = "mountain crease"
+    VALLEY = "valley crease"
+    CREASE = "unassigned crease"
+    BORDER = "border"
+    HOLE = "hole"
+    CUT = "cut"
+    FACET = "facet line, left out"
+    ASIDE = "line that is no part of the sheet, left out"  # dimensions, text, glue, bleed, guides; by its name
+    DARK = "border, hole or unassigned crease"  # black and nothing else to go by
+    PALE = "auxiliary line"  # grey and nothing else to go by
+
+
+#: Roles that are creases whatever else is in the drawing.
+CREASE_ROLES = frozenset({Role.MOUNTAIN, Role.VALLEY, Role.CREASE})
+#: Roles that are edges of the paper whatever else is in the drawing.
+EDGE_ROLES = frozenset({Role.BORDER, Role.HOLE, Role.CUT})
+
+
+@dataclass(frozen=True)
+class Decision:
+    """The role of one stroke and the evidence: ``why`` is "hue", "class", "group or layer name", ..."""
+
+    role: Role
+    why: str
+    detail: str
+
+
+@dataclass(frozen=True, eq=False)
+class Stroke:
+    """One sampled subpath with what is thought of it; ``fate`` is what became of it, for the notes."""
+
+    curve: Curve
+    decision: Decision
+    name: str
+    opacity: float
+    fate: str = ""
