@@ -40,6 +40,25 @@ _SILENT = frozenset(
     | {"style", "title", "desc", "metadata", "script", "view", "font"}
     | {"animate", "animateTransform", "animateMotion", "set"}
 )
+#: Attributes in which programs say what a line is, in words.
+DATA_ATTRIBUTES = (
+    "data-assignment",
+    "data-type",
+    "data-layer",
+    "data-name",
+    "data-role",
+    "data-kind",
+    "data-fold",
+    "data-linetype",
+    "type",
+    "inkscape:label",
+)
+#: Of these, the ones that make a line of a shape that nothing else gives a look: the others name layers, whatever
+#: is in them.
+_DATA_OF_LINES = frozenset(DATA_ATTRIBUTES) - {"data-name", "type", "inkscape:label"}
+#: Such attributes of one shape with its groups, and characters of their values.
+_MAX_DATA = 20
+_MAX_DATA_LENGTH = 100
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +74,8 @@ class Drawn:
     dashes    dash lengths, empty for a solid line
     classes   class names, its own first, then those of its groups from the inside out
     names     ids and layer names, its own first, then those of its groups from the inside out
+    data      (name, value) of the attributes DATA_ATTRIBUTES, its own first, then those of its groups from the
+              inside out
     """
 
     element: str
@@ -66,15 +87,26 @@ class Drawn:
     dashes: tuple[float, ...]
     classes: tuple[str, ...]
     names: tuple[str, ...]
+    data: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """All that a file draws; ``notes`` say what was left out on the way."""
+    """All that a file draws.
+
+    shapes   in the order they are drawn
+    unit_mm  millimetres in one unit, None when the file does not say it
+    notes    what was left out on the way, and what was decided
+    page     (x0, y0, x1, y1) of what the root shows, in the drawing's units, y up: its viewBox, else its width and
+             height, else None
+    text     how many <text> elements were left out
+    """
 
     shapes: tuple[Drawn, ...]
     unit_mm: float | None
     notes: tuple[str, ...]
+    page: tuple[float, float, float, float] | None = None
+    text: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +120,8 @@ class _State:
     height: float
     classes: tuple[str, ...] = ()
     names: tuple[str, ...] = ()
+    data: tuple[tuple[str, str], ...] = ()
+    painted: bool = False  # whether a stroke or a fill is declared, here or around
     depth: int = 0
     used: tuple[Node, ...] = field(default=())
 
@@ -142,7 +176,7 @@ class _Walk:
         self._notes += [f"{count} {what}" for what, count in self._left_out.items()]
         if self._sheet.skipped:
             self._notes.append(f"style rules that are not understood: {', '.join(self._sheet.skipped[:5])}")
-        return Drawing(tuple(shapes), unit, tuple(self._notes))
+        return Drawing(tuple(shapes), unit, tuple(self._notes), viewport.page, self._left_out[_left_out("text")])
 
     # ---- viewports
 
@@ -158,8 +192,9 @@ class _Walk:
                 height.pixels if height else None,
                 MM_PER_PIXEL if any(length.absolute for length in sizes) else None,
                 1.0,
+                page=(0.0, 0.0, width.pixels, height.pixels) if width and height else None,
             )
-        _, y, box_width, box_height = box
+        x, y, box_width, box_height = box
         scales = (
             None if width is None else width.pixels / box_width,
             None if height is None else height.pixels / box_height,
@@ -183,6 +218,7 @@ class _Walk:
             scale * MM_PER_PIXEL if scale is not None and absolute else None,
             scale,
             stretch,
+            (x, stretch * y, x + box_width, stretch * (y + box_height)),
         )
 
     def _root_length(self, name: str) -> Length | None:
@@ -246,7 +282,7 @@ class _Walk:
         if state.depth > MAX_DEPTH:
             raise PatternError(f"elements are nested more than {MAX_DEPTH} deep", element=str(node))
         if tag not in _CONTAINERS and tag not in SHAPES and tag != "use":
-            self._left_out[f"<{tag}> left out: not a line"] += 1
+            self._left_out[_left_out(tag)] += 1
             return
         try:
             inner = self._enter(node, self._sheet.style(node), state)
@@ -284,6 +320,7 @@ class _Walk:
                 raise SvgValueError("the transforms together are not finite")
         own = node.attributes if named else {}
         names = [own.get("id", ""), own.get("inkscape:label", ""), own.get("data-name", "")]
+        data = tuple((name, own[name][:_MAX_DATA_LENGTH]) for name in DATA_ATTRIBUTES if name in own)
         return replace(
             state,
             matrix=matrix,
@@ -291,6 +328,8 @@ class _Walk:
             opacity=state.opacity * _opacity(style.get("opacity", "1")),
             classes=(*node.classes, *state.classes) if named else (),
             names=(*(name for name in names if name), *state.names),
+            data=(*data, *state.data)[:_MAX_DATA] if data else state.data,
+            painted=state.painted or "stroke" in style or "fill" in style,
             depth=state.depth + 1,
         )
 
@@ -355,6 +394,12 @@ class _Walk:
         stroke = self._paint(node, properties["stroke"], properties["color"])
         fill = self._paint(node, properties["fill"], properties["color"])
         stroke_width = self._length(parse_length(properties["stroke-width"]), 0.0)
+        if not state.painted and any(name in _DATA_OF_LINES for name, _ in state.data):
+            # Nothing says how it looks, but what it is.
+            stroke, fill = UNKNOWN_COLOUR, None
+            self._left_out[
+                f"<{node.tag}> without stroke and fill read as a line, since its data say what it is"
+            ] += 1
         opacity = 0.0
         if stroke is not None and stroke_width != 0.0:
             opacity = state.opacity * stroke.opacity * _opacity(properties["stroke-opacity"])
@@ -397,6 +442,7 @@ class _Walk:
                 self._dashes(properties["stroke-dasharray"]),
                 state.classes,
                 state.names,
+                state.data,
             )
         )
 
@@ -429,6 +475,11 @@ class _Viewport:
     unit_mm: float | None
     pixels_per_unit: float | None
     stretch: float = 1.0  # of y against x, when preserveAspectRatio is none
+    page: tuple[float, float, float, float] | None = None
+
+
+def _left_out(tag: str) -> str:
+    return f"<{tag}> left out: not a line"
 
 
 def _aspect(attributes: dict[str, str]) -> tuple[str, bool]:
