@@ -31,7 +31,7 @@ def read_fold_mesh(source: str | os.PathLike[str] | IO[Any]) -> SheetMesh:
 
 
 def _mesh(file: FoldFile) -> SheetMesh:
-    sheet = choose_frame(file)
+    sheet = choose_frame(file, folded_too=False)
     flat = sheet.coordinates
     folded, vertices = _folded(file, sheet.index)
     if len(vertices) != len(flat):

@@ -71,6 +71,7 @@ class CreasePattern:
     name      for messages and file names
     unit_mm   millimetres in one drawing unit, or None when the drawing does not say
     notes     what a reader decided, one sentence each (which stroke became what, and why)
+    conflicts  creases that are drawn as a mountain and as a valley, one sentence each; they are unassigned
     Raises PatternError on points that are not finite or a border without area.
     """
 
@@ -80,6 +81,7 @@ class CreasePattern:
     name: str
     unit_mm: float | None
     notes: tuple[str, ...]
+    conflicts: tuple[str, ...]
 
     def __init__(
         self,
@@ -89,6 +91,7 @@ class CreasePattern:
         name: str = "",
         unit_mm: float | None = None,
         notes: Sequence[str] = (),
+        conflicts: Sequence[str] = (),
     ) -> None:
         object.__setattr__(self, "boundary", _ring(boundary, "border", counter_clockwise=True))
         object.__setattr__(
@@ -100,10 +103,11 @@ class CreasePattern:
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "unit_mm", None if unit_mm is None else float(unit_mm))
         object.__setattr__(self, "notes", tuple(notes))
+        object.__setattr__(self, "conflicts", tuple(conflicts))
 
     def named(self, name: str, unit_mm: float | None) -> CreasePattern:
         """The same drawing with another name and unit."""
-        return CreasePattern(self.boundary, self.holes, self.creases, name, unit_mm, self.notes)
+        return CreasePattern(self.boundary, self.holes, self.creases, name, unit_mm, self.notes, self.conflicts)
 
     def noted(self, note: str) -> CreasePattern:
         """The same drawing with one more note, the first."""

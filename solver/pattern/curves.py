@@ -16,6 +16,10 @@ CORNER = np.radians(30.0)
 #: Points of one sampled crease at most: a thousand sheets long at a usual resolution. What lies off the sheet is
 #: sampled as finely as what lies on it.
 _MOST_POINTS = 400_000
+#: Turns of a zigzag are more than this, radians: smaller ones are rounding.
+_TURN = np.radians(1.0)
+#: A polyline is a zigzag when this part of its turns is to the other side than the one before.
+_ZIGZAG = 0.5
 #: A segment this many times longer than the median is a straight part between curved ones.
 _STRAIGHT_RATIO = 3.0
 
@@ -101,9 +105,17 @@ def _densify(points: FloatArray, closed: bool, spacing: float) -> FloatArray:
     return drop_repeats(np.vstack(dense))
 
 
+def _is_zigzag(points: FloatArray) -> bool:
+    """Whether a polyline turns left and right in turn, which no samples of a smooth curve do."""
+    steps = np.diff(points, axis=0)
+    cross = steps[:-1, 0] * steps[1:, 1] - steps[:-1, 1] * steps[1:, 0]
+    sides = np.sign(cross[turns(points) > _TURN])
+    return len(sides) > 2 and bool((sides[1:] != sides[:-1]).sum() > _ZIGZAG * (len(sides) - 1))
+
+
 def _spline(points: FloatArray, spacing: float, periodic: bool) -> FloatArray:
     steps = np.hypot(*np.diff(points, axis=0).T)
-    if steps.max() <= spacing or turns(points).max() < 1e-7:
+    if steps.max() <= spacing or turns(points).max() < 1e-7 or _is_zigzag(points):
         return points
     along = np.concatenate([[0.0], np.cumsum(steps)])
     curve = CubicSpline(along, points, bc_type="periodic" if periodic else "not-a-knot")

@@ -2,7 +2,7 @@
 
 Units are the frame's own, y is up as in the file. The steps: ``fold_file_frames`` reads safely and chooses the
 frame that is a drawing, ``fold_file_values`` checks its lists, ``fold_file_graph`` mends vertices and edges,
-``fold_file_chains`` joins edges into curves, and ``fold_file_sheet`` says what is border, hole and crease.
+``fold_file_strokes`` joins edges into lines, and ``sheets`` says what is border, hole and crease.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from ..errors import CurvefoldError, PatternError
 from .crease_pattern import CreasePattern
 from .fold_file_frames import choose_frame, parse_fold
 from .fold_file_graph import edge_graph
-from .fold_file_sheet import make_pattern
+from .fold_file_strokes import lines_of
 from .read_options import ReadOptions
+from .sheets import make_patterns
 from .source import read_source
 
 #: Millimetres in one frame_unit (FOLD 1.2); "unit" and what is not listed here say nothing.
@@ -45,7 +46,8 @@ def read_fold(
         if unit_mm is None and graph.size < _SMALL:
             unit_mm = _UNIT_OF_SMALL
             notes.append(f"the file gives no unit, so that one is taken for {unit_mm:g} mm")
-        return (make_pattern(graph, unit_mm, notes),)
+        lines = lines_of(graph, unit_mm, tuple(notes))
+        return make_patterns(lines, (options or ReadOptions()).border)
     except CurvefoldError as error:
         raise (error if name is None else error.in_file(name)) from error
     except (ArithmeticError, ValueError, IndexError, MemoryError, shapely.errors.ShapelyError) as error:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import shapely
 
 from ..arrays import FloatArray
 from ..errors import PatternError, ReadError
-from .fold_file_values import coordinates
+from .fold_file_values import check_vertices, coordinates, index_rows
 
 #: Values of a file, counted by their commas and brackets before it is parsed; each takes 80 bytes at most then.
 #: A mesh of 100,000 vertices, folded and flat, has about three million.
@@ -24,6 +26,8 @@ MAX_FRAMES = 10_000
 MAX_PARENTS = 100
 #: Vertices farther than this from their plane, relative to the drawing's longer side, are not flat.
 _FLAT = 1e-4
+#: Faces that lie on each other with less than this part of their area do so by rounding.
+_OVERLAP = 1e-4
 #: How much of a file's words messages and notes repeat.
 _WORDS = 60
 
@@ -126,14 +130,15 @@ def parse_fold(data: bytes | str) -> FoldFile:
     return FoldFile(top)
 
 
-def choose_frame(file: FoldFile) -> Frame:
+def choose_frame(file: FoldFile, folded_too: bool = True) -> Frame:
     """The frame to read: the first crease pattern, or else the first flat frame that is no folded form.
 
-    Raises ReadError and PatternError.
+    folded_too: or else a folded form that is not folded yet, as simulators write it before they start: it is flat
+    and no part of it lies on another. Raises ReadError and PatternError.
     """
     marked: list[int] = []
     others: list[int] = []
-    folded = False
+    folded: list[int] = []
     refused: list[PatternError | ReadError] = []
     for index in range(len(file)):
         try:
@@ -146,7 +151,7 @@ def choose_frame(file: FoldFile) -> Frame:
         if "creasePattern" in classes:
             marked.append(index)
         elif "foldedForm" in classes:
-            folded = True
+            folded.append(index)
         else:
             others.append(index)
     for index in (*marked, *others):
@@ -159,11 +164,34 @@ def choose_frame(file: FoldFile) -> Frame:
             return Frame(file, index, file.flat(index), _said(file, index))
         except (PatternError, ReadError) as error:
             refused.append(error)
+    for index in folded if folded_too else ():
+        with contextlib.suppress(PatternError, ReadError):
+            flat = file.flat(index)
+            if _lies_open(file, index, flat):
+                note = "the folded form lies flat with no part on another, and was read as the crease pattern"
+                return Frame(file, index, flat, (*_said(file, index), note))
     if refused:
         raise refused[0]
     if folded:
         raise PatternError("it holds only a folded form, and a drawing is flat: save the crease pattern as well")
     raise PatternError("the drawing has no line: no frame has vertices_coords")
+
+
+def _lies_open(file: FoldFile, index: int, points: FloatArray) -> bool:
+    """Whether no face of a flat frame lies on another; without faces, whether no edge crosses another."""
+    faces = index_rows(file.get(index, "faces_vertices") or [], "faces_vertices", 3, None)
+    edges = index_rows(file.get(index, "edges_vertices") or [], "edges_vertices", 2, 2)
+    check_vertices(faces, "faces_vertices", len(points))
+    check_vertices(edges, "edges_vertices", len(points))
+    if len(faces.lengths):
+        rings = np.repeat(np.arange(len(faces.lengths)), faces.lengths)
+        polygons = shapely.polygons(shapely.linearrings(points[faces.vertices], indices=rings))
+        if not shapely.is_valid(polygons).all():
+            return False
+        whole = float(shapely.area(polygons).sum())
+        return whole - float(shapely.union_all(polygons).area) <= _OVERLAP * whole
+    lines = shapely.linestrings(points[edges.vertices].reshape(-1, 2, 2))
+    return bool(len(lines)) and not len(shapely.STRtree(lines).query(lines, predicate="crosses")[0])
 
 
 def _said(file: FoldFile, index: int) -> tuple[str, ...]:

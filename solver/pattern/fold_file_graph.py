@@ -29,6 +29,8 @@ from .segments import MAX_POINTS, STRAIGHT
 
 #: Letters of edges that are lines of the drawing; the others are lines of a mesh.
 DRAWN = ("B", "C", "M", "V", "U")
+#: Contradictions that are told one by one.
+_MOST_SAID = 20
 #: Smaller drawings cannot be squared.
 _LEAST_SIZE = 1e-100
 
@@ -43,6 +45,7 @@ class EdgeGraph:
     number  (E,) which crease the writer says that it belongs to, -1 unknown
     size    longer side of the drawing
     notes   what was mended
+    conflicts  edges that are given as M and as V, in words; they are unassigned
     """
 
     points: FloatArray
@@ -51,6 +54,7 @@ class EdgeGraph:
     number: IntArray
     size: float
     notes: tuple[str, ...]
+    conflicts: tuple[str, ...]
 
 
 def edge_graph(frame: Frame) -> EdgeGraph:
@@ -134,6 +138,8 @@ def _mended(points: FloatArray, ends: IntArray, letter: Any, number: IntArray, n
     if int(drawn.sum()) > MAX_POINTS:
         raise PatternError(f"the drawing needs more than {MAX_POINTS:,} points: it has {drawn.sum():,} edges")
     points = np.where(np.isnan(points), low, points)
+    letter, conflicts = _contradicted(points, ends, letter)
+    notes += [f"{conflict}; it is left unassigned" for conflict in conflicts]
     graph = _tidy(points, ends, letter, number)
     joined = _joined_ends(graph[0], graph[1], graph[2], JOIN * size)
     if joined is not None:
@@ -144,7 +150,22 @@ def _mended(points: FloatArray, ends: IntArray, letter: Any, number: IntArray, n
         notes.append(
             f"{lost:,} {'edge was' if lost == 1 else 'edges were'} left out: given twice, or without length"
         )
-    return EdgeGraph(graph[0], graph[1], graph[2], graph[3], size, tuple(notes))
+    return EdgeGraph(graph[0], graph[1], graph[2], graph[3], size, tuple(notes), conflicts)
+
+
+def _contradicted(points: FloatArray, ends: IntArray, letter: Any) -> tuple[Any, tuple[str, ...]]:
+    """The letters with U for edges that are given both as M and as V, and a sentence for each of these."""
+    keys = _keys(ends, len(points))
+    both = np.intersect1d(keys[letter == "M"], keys[letter == "V"])
+    if not len(both):
+        return letter, ()
+    sentences = []
+    for key in both[:_MOST_SAID].tolist():
+        x, y = points[[key // len(points), key % len(points)]].mean(axis=0)
+        sentences.append(f"the edge near ({x:.4g}, {y:.4g}) is given as a mountain and as a valley")
+    if len(both) > _MOST_SAID:
+        sentences.append(f"{len(both) - _MOST_SAID:,} more edges are given as mountains and as valleys")
+    return np.where(np.isin(keys, both) & np.isin(letter, ("M", "V")), "U", letter), tuple(sentences)
 
 
 def _tidy(

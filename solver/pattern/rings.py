@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
@@ -26,29 +27,45 @@ MAX_MEETING = 200_000
 _CHUNK = 64
 
 
+#: Shapely's geometries (N,).
+Geometries = NDArray[np.object_]
+
+
+@dataclass(frozen=True, eq=False)
+class Gap:
+    """Where two ends of an outline did not meet: the middle between them, and how far they are apart."""
+
+    place: FloatArray
+    width: float
+
+
 @dataclass(frozen=True, eq=False)
 class Ring:
     """A closed outline: points (P,2) without the first repeated, and the same as a polygon.
 
     members  indices of the curves that lie on it
+    gaps     where it had to be closed
     """
 
     points: FloatArray
     polygon: shapely.Polygon
     members: frozenset[int]
+    gaps: tuple[Gap, ...] = ()
 
 
-def outer_rings(curves: Sequence[Curve], indices: Sequence[int], size: float) -> list[Ring]:
+def outer_rings(curves: Sequence[Curve], indices: Sequence[int], size: float, reach: float = JOIN) -> list[Ring]:
     """The outlines of what the curves ``indices`` enclose together, largest area first.
 
-    Curves are joined at their ends within JOIN and cut at each other; what does not close is left aside.
+    Curves are joined at their ends within JOIN and cut at each other; what does not close is left aside. Ends that
+    nothing meets are joined with each other, or with a line, within ``reach``, a part of ``size``.
     """
     tolerance = JOIN * size
     if len(indices) == 1 and curves[indices[0]].closed:
         polygon = shapely.Polygon(curves[indices[0]].points)
         if polygon.is_valid and polygon.area > tolerance * tolerance:
             return [Ring(curves[indices[0]].points, polygon, frozenset(indices))]
-    lines = _joined_lines(curves, indices, tolerance)
+    rows, gaps = _joined_rows(curves, indices, tolerance, max(reach * size, tolerance))
+    lines = [shapely.LineString(row) for row in rows.values()]
     if not lines:
         return []
     _check_crossings(lines)
@@ -64,38 +81,106 @@ def outer_rings(curves: Sequence[Curve], indices: Sequence[int], size: float) ->
     for area in areas:
         exterior = shapely.get_coordinates(area.exterior)[:-1]
         polygon = shapely.Polygon(exterior)
-        members = _members(curves, indices, polygon, tolerance)
-        rings.append(Ring(_ring_points(curves, members, polygon, original, size), polygon, members))
+        members = _members(rows, polygon, tolerance)
+        rings.append(
+            Ring(
+                _ring_points(curves, members, polygon, original, size),
+                polygon,
+                members,
+                tuple(g for g in gaps if polygon.exterior.distance(shapely.Point(g.place)) <= g.width),
+            )
+        )
     return sorted(rings, key=lambda ring: -ring.polygon.area)
 
 
-def _joined_lines(curves: Sequence[Curve], indices: Sequence[int], tolerance: float) -> list[shapely.LineString]:
-    """The curves as lines, open ends within ``tolerance`` moved onto one of them."""
-    open_ends = [curves[i].points[[0, -1]] for i in indices if not curves[i].closed]
-    moved: dict[int, FloatArray] = {}
-    if open_ends:
-        ends = np.vstack(open_ends)
-        tree = cKDTree(ends)
-        if tree.count_neighbors(tree, tolerance) > MAX_NEAR:
-            raise PatternError("too many lines end in the same place")
-        pairs = tree.query_pairs(tolerance, output_type="ndarray")
-        graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(ends), len(ends)))
-        _, label = connected_components(graph, directed=False)
+def meeting_places(points: FloatArray, tolerance: float) -> IntArray:
+    """(N,) a number for each place where points (N,2) lie within ``tolerance`` of each other, directly or through
+    others. Raises PatternError when too many do.
+    """
+    places, which = np.unique(points, axis=0, return_inverse=True)
+    tree = cKDTree(places)
+    if tree.count_neighbors(tree, tolerance) > MAX_NEAR:
+        raise PatternError("too many lines end in the same place")
+    pairs = tree.query_pairs(tolerance, output_type="ndarray")
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(places),) * 2)
+    label = connected_components(graph, directed=False)[1]
+    return np.asarray(label[which.reshape(-1)], dtype=np.int64)
+
+
+def loose_ends(ends: FloatArray, tolerance: float) -> IntArray:
+    """Indices of the ends (N,2) that no other end meets within ``tolerance``."""
+    label = meeting_places(ends, tolerance)
+    return np.flatnonzero(np.bincount(label)[label] == 1)
+
+
+def _joined_rows(
+    curves: Sequence[Curve], indices: Sequence[int], tolerance: float, reach: float
+) -> tuple[dict[int, FloatArray], list[Gap]]:
+    """The points of each curve, closed ones with the first repeated; those without length left out.
+
+    Open ends within ``tolerance`` are moved onto one of them, and loose ones within ``reach``.
+
+    What had to be moved by more than ``tolerance`` is a gap.
+    """
+    open_ = [i for i in indices if not curves[i].closed]
+    gaps: list[Gap] = []
+    rows = {i: curves[i].points for i in indices}
+    if open_:
+        drawn = np.vstack([curves[i].points[[0, -1]] for i in open_])
+        label = meeting_places(drawn, tolerance)
         _, first = np.unique(label, return_index=True)
-        ends = ends[first[label]].reshape(-1, 2, 2)
-        moved = dict(zip((i for i in indices if not curves[i].closed), ends, strict=True))
-    lines = []
+        ends = drawn[first[label]]
+        loose = np.flatnonzero(np.bincount(label)[label] == 1)
+        if reach > tolerance and len(loose):
+            ends, gaps = _reached(curves, indices, open_, ends, loose, tolerance, reach)
+        for k, i in enumerate(open_):
+            points = curves[i].points.copy()
+            points[[0, -1]] = ends[2 * k : 2 * k + 2]
+            rows[i] = points
     for i in indices:
-        points = curves[i].points
         if curves[i].closed:
-            points = np.vstack([points, points[:1]])
-        else:
-            points = points.copy()
-            points[[0, -1]] = moved[i]
-            if len(points) == 2 and np.array_equal(points[0], points[1]):
-                continue
-        lines.append(shapely.LineString(points))
-    return lines
+            rows[i] = np.vstack([rows[i], rows[i][:1]])
+        elif len(rows[i]) == 2 and np.array_equal(rows[i][0], rows[i][1]):
+            del rows[i]
+    return rows, gaps
+
+
+def _reached(
+    curves: Sequence[Curve],
+    indices: Sequence[int],
+    open_: Sequence[int],
+    ends: FloatArray,
+    loose: IntArray,
+    tolerance: float,
+    reach: float,
+) -> tuple[FloatArray, list[Gap]]:
+    """``ends`` with the loose ones moved: onto the loose one that is nearest, both ways, or else onto a line."""
+    ends, gaps = ends.copy(), []
+    left = set(loose.tolist())
+    if len(loose) > 1:
+        distance, place = cKDTree(ends[loose]).query(ends[loose], k=2)
+        nearest = np.where(place[:, 0] == np.arange(len(loose)), place[:, 1], place[:, 0])
+        for k, other in enumerate(nearest.tolist()):
+            if k < other and nearest[other] == k and distance[k, 1] <= reach:
+                a, b = int(loose[k]), int(loose[other])
+                gaps.append(Gap(0.5 * (ends[a] + ends[b]), float(distance[k, 1])))
+                ends[b] = ends[a]
+                left -= {a, b}
+    lines = [curve_line(curves[i]) for i in indices]
+    tree = shapely.STRtree(lines)
+    for k in sorted(left):
+        point = shapely.Point(ends[k])
+        near = [j for j in tree.query(point, predicate="dwithin", distance=reach) if indices[j] != open_[k // 2]]
+        if not near:
+            continue
+        line = lines[min(near, key=lambda j: lines[j].distance(point))]
+        target = shapely.get_coordinates(line.interpolate(line.project(point)))[0]
+        width = float(np.hypot(*(target - ends[k])))
+        if width > tolerance:
+            gaps.append(Gap(0.5 * (target + ends[k]), width))
+            # A hair beyond the line, so that the two are cut at each other whatever is rounded.
+            ends[k] = target + (target - ends[k]) * (1e-3 * tolerance / width)
+    return ends, gaps
 
 
 def _noded(lines: Sequence[shapely.LineString]) -> shapely.Geometry:
@@ -126,8 +211,11 @@ def _check_crossings(lines: Sequence[shapely.LineString]) -> None:
             raise PatternError("the lines that could be the border cross each other too often to be one")
 
 
-def _near_pairs(tree: shapely.STRtree, lines: FloatArray, distance: float) -> tuple[IntArray, IntArray]:
-    """Index pairs of lines within ``distance``. Raises PatternError when there are too many."""
+def near_pairs(tree: shapely.STRtree, lines: Geometries, distance: float) -> tuple[IntArray, IntArray]:
+    """Index pairs: ``lines``, and what in ``tree`` is within ``distance`` of each.
+
+    Raises PatternError when there are too many.
+    """
     found: list[IntArray] = []
     count = 0
     for start in range(0, len(lines), _CHUNK):
@@ -141,14 +229,12 @@ def _near_pairs(tree: shapely.STRtree, lines: FloatArray, distance: float) -> tu
     return first, second
 
 
-def _members(
-    curves: Sequence[Curve], indices: Sequence[int], polygon: shapely.Polygon, tolerance: float
-) -> frozenset[int]:
-    """The curves that lie on the polygon's exterior over their whole length."""
-    lines = np.array([curve_line(curves[i]) for i in indices])
+def _members(rows: dict[int, FloatArray], polygon: shapely.Polygon, tolerance: float) -> frozenset[int]:
+    """The lines that lie on the polygon's exterior over their whole length."""
+    lines = np.array([shapely.LineString(row) for row in rows.values()])
     band = polygon.exterior.buffer(2.0 * tolerance)
     shapely.prepare(band)
-    return frozenset(i for i, inside in zip(indices, shapely.covers(band, lines), strict=True) if inside)
+    return frozenset(i for i, inside in zip(rows, shapely.covers(band, lines), strict=True) if inside)
 
 
 def _ring_points(
@@ -202,7 +288,7 @@ def touching_groups(curves: Sequence[Curve], indices: Sequence[int], tolerance: 
         return []
     lines = np.array([curve_line(curves[i]) for i in indices])
     tree = shapely.STRtree(lines)
-    first, second = _near_pairs(tree, lines, tolerance)
+    first, second = near_pairs(tree, lines, tolerance)
     graph = coo_matrix((np.ones(len(first)), (first, second)), shape=(len(lines), len(lines)))
     count, label = connected_components(graph, directed=False)
     groups: list[list[int]] = [[] for _ in range(count)]

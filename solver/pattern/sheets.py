@@ -1,9 +1,9 @@
-"""From classified strokes to a sheet: border, holes, creases, and a sentence for every decision."""
+"""From lines that have a meaning to sheets: border, holes, creases, and a sentence for every decision."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,91 +11,119 @@ import shapely
 
 from ..errors import PatternError
 from .crease_pattern import Crease, CreasePattern
-from .meaning import classify
-from .rings import JOIN, Ring, curve_line, outer_rings, share_inside, touching_groups
-from .segments import MAX_POINTS, Curve, bounds, sample
-from .stroke import CREASE_ROLES, EDGE_ROLES, Role, Stroke
-from .svg_walk import Drawing, Drawn
+from .joining import length_of
+from .rings import JOIN, Ring, curve_line, outer_rings, touching_groups
+from .same_line import settle_same_lines
+from .segments import Curve
+from .sheet_finding import Found, Search, find_sheets
+from .stroke import CREASE_ROLES, EDGE_ROLES, Lines, Role, Stroke
 
-#: How much of the creases (by length) a closed outline must hold to be the border. Strokes that say they are
-#: an edge need less agreement than black ones, these less than a drawing in which nothing says anything.
-_SHARE_NAMED = 0.9
-_SHARE_BLACK = 0.5
-_SHARE_ANY = 0.95
-#: An outline inside another one that holds this share of the creases is the sheet, and the outer one a frame.
-_SHARE_FRAMED = 0.99
 #: A stroke that runs along the border for this share of the drawing's side is cut there.
 _ALONG = 0.01
+#: Open strokes that cover this share of an outline together are a hole.
+_COVERED = 0.99
 #: Strokes (subpaths) and holes of one drawing.
-MAX_STROKES = 20_000
+MAX_STROKES = 50_000
 MAX_HOLES = 1_000
 
 _LETTERS = {Role.MOUNTAIN: "M", Role.VALLEY: "V"}
+#: What becomes of strokes that say they are nothing to fold, and of what lies off the sheet.
+_LEFT_OUT = {Role.ASIDE: "left out: no part of the sheet", Role.FACET: "left out: facet line"}
+_BESIDE = "left out: beside the sheet"
+_NO_CREASE = "no crease is drawn on the sheet: it is blank paper, which handles can bend"
 
 
-def make_pattern(drawing: Drawing) -> CreasePattern:
-    """The crease pattern that a drawing means. Raises PatternError: no strokes, no border, no crease."""
-    return _Sheet(drawing).pattern()
+def make_patterns(lines: Lines, border: str) -> tuple[CreasePattern, ...]:
+    """The sheets that a drawing means, in its order. border: one of BORDERS, how the sheet is found.
+
+    Raises PatternError, with the notes so far: no line, no border.
+    """
+    if not lines.strokes:
+        raise PatternError("the drawing has no line: all its strokes have no length", notes=lines.notes)
+    coordinates = np.vstack([stroke.curve.points for stroke in lines.strokes])
+    size = float(np.ptp(coordinates, axis=0).max())
+    if not size > 0.0:
+        raise PatternError("the drawing has no size: all its lines are one point", notes=lines.notes)
+    try:
+        strokes, twice, conflicts = settle_same_lines(lines.strokes, JOIN * size)
+        marked = any(stroke.decision.role in CREASE_ROLES for stroke in strokes)
+        found = find_sheets(Search(strokes, lines.filled, lines.page, size, marked), border)
+        notes = (*twice, *found.notes)
+        return _patterns(lines, strokes, found, size, marked, notes, (*lines.conflicts, *conflicts))
+    except PatternError as error:
+        roles = Counter((s.decision.detail, s.decision.role.value, s.decision.why) for s in lines.strokes)
+        raise error.with_notes((*_in_words(roles), *lines.notes)) from error
+
+
+def _patterns(
+    lines: Lines,
+    strokes: Sequence[Stroke],
+    found: Found,
+    size: float,
+    marked: bool,
+    notes: Sequence[str],
+    conflicts: Sequence[str],
+) -> tuple[CreasePattern, ...]:
+    """One pattern a sheet; what lies beside all of them is told with the first."""
+    curves = [curve_line(stroke.curve) for stroke in strokes]
+    tree = shapely.STRtree(curves)
+    beside = set(range(len(strokes)))
+    near: list[list[int]] = []
+    for ring in found.sheets:
+        grown = ring.polygon.buffer(JOIN * size)
+        near.append(sorted({*tree.query(grown, predicate="intersects").tolist(), *ring.members} - found.frames))
+        beside -= set(near[-1])
+    apart = [_fated(strokes[i], i in found.frames) for i in sorted(beside)]
+    several = len(found.sheets) > 1
+    patterns = []
+    for number, (ring, mine) in enumerate(zip(found.sheets, near, strict=True), 1):
+        local = {i: k for k, i in enumerate(mine)}
+        own = replace(ring, members=frozenset(local[i] for i in ring.members))
+        told = [f"sheet {number} of {len(found.sheets)} in the file", *notes] if several else list(notes)
+        sheet = _Sheet([strokes[i] for i in mine], size, marked)
+        patterns.append(sheet.pattern(own, lines, [] if number > 1 else apart, told, conflicts))
+    return tuple(patterns)
+
+
+def _fated(stroke: Stroke, frame: bool) -> Stroke:
+    if stroke.decision.role in (Role.ASIDE, Role.FACET):
+        return replace(stroke, fate=_LEFT_OUT[stroke.decision.role])
+    return replace(stroke, fate="left out: a frame around the sheet" if frame else _BESIDE)
 
 
 class _Sheet:
-    """The decisions about one drawing, step by step. Not reusable."""
+    """The decisions about the strokes of one sheet, step by step. Not reusable."""
 
-    def __init__(self, drawing: Drawing) -> None:
-        self._drawing = drawing
-        stroked = [shape for shape in drawing.shapes if shape.stroke is not None]
-        if not stroked:
-            raise PatternError("the drawing has no line: nothing in it is stroked")
-        x0, y0, x1, y1 = bounds([subpath for shape in stroked for subpath in shape.subpaths])
-        self._size = max(x1 - x0, y1 - y0)
-        if not self._size > 0.0:
-            raise PatternError("the drawing has no size: all its lines are one point")
-        self._tolerance = JOIN * self._size
-        self._strokes: list[Stroke] = []
-        budget = MAX_POINTS
-        for shape in stroked:
-            decision = classify(shape)
-            for curve, part in self._curves(shape, budget):
-                budget -= len(curve.points)
-                identity = shape.identity[:80]
-                name = f"{identity} part {part}" if identity and part else identity
-                if len(self._strokes) == MAX_STROKES:
-                    raise PatternError(f"the drawing has more than {MAX_STROKES:,} strokes")
-                self._strokes.append(Stroke(curve, decision, name, shape.opacity))
-        if not self._strokes:
-            raise PatternError("the drawing has no line: all its strokes have no length")
+    def __init__(self, strokes: Sequence[Stroke], size: float, marked: bool) -> None:
+        self._strokes = list(strokes)
+        self._size = size
+        self._tolerance = JOIN * size
         #: Whether anything says "I am a crease"; otherwise black lines are the creases.
-        self._marked = any(stroke.decision.role in CREASE_ROLES for stroke in self._strokes)
-        self._notes: list[str] = []
+        self._marked = marked
 
-    def _curves(self, shape: Drawn, budget: int) -> Iterable[tuple[Curve, int]]:
-        several = len(shape.subpaths) > 1
-        for part, subpath in enumerate(shape.subpaths, start=1):
-            try:
-                curve = sample(subpath, self._size, budget)
-            except PatternError as error:
-                raise PatternError(error.message, element=shape.element) from error
-            if curve is not None:
-                budget -= len(curve.points)
-                yield curve, part if several else 0
-
-    def pattern(self) -> CreasePattern:
-        sheet, explained = self._find_sheet()
+    def pattern(
+        self,
+        sheet: Ring,
+        lines: Lines,
+        apart: Sequence[Stroke],
+        notes: Sequence[str],
+        conflicts: Sequence[str],
+    ) -> CreasePattern:
         for i in sheet.members:
             self._settle(i, "border")
-        if explained:
-            self._notes.append(explained)
         self._cut_along(sheet)
         holes = self._find_holes(sheet)
         self._leave_out_far(sheet, holes)
-        self._settle_rest()
-        creases = self._creases()
+        self._settle_rest(sheet, holes)
+        creases, said = self._creases()
+        fates = Counter((s.decision.detail, s.fate, s.decision.why) for s in (*self._strokes, *apart))
         return CreasePattern(
             sheet.points,
             [hole.points for hole in holes],
             creases,
-            unit_mm=self._drawing.unit_mm,
-            notes=(*self._stroke_notes(), *self._notes, *self._drawing.notes),
+            unit_mm=lines.unit_mm,
+            notes=(*_in_words(fates), *notes, *said, *lines.notes),
+            conflicts=conflicts,
         )
 
     # ---- small helpers
@@ -107,102 +135,11 @@ class _Sheet:
     def _settle(self, index: int, fate: str) -> None:
         self._strokes[index] = replace(self._strokes[index], fate=fate)
 
-    def _some(self, indices: Iterable[int]) -> list[Curve]:
-        return [self._strokes[i].curve for i in indices]
-
     @property
     def _all(self) -> list[Curve]:
         return [stroke.curve for stroke in self._strokes]
 
     # ---- the border
-
-    def _find_sheet(self) -> tuple[Ring, str]:
-        edges = self._open(*EDGE_ROLES)
-        dark = self._open(Role.DARK)
-        pale = self._open(Role.PALE)
-        creases = self._open(*CREASE_ROLES)
-        dark_share = _SHARE_BLACK if self._marked else _SHARE_ANY
-        attempts = [
-            (edges, _SHARE_NAMED, ""),
-            (edges + dark, dark_share, ""),
-            (edges + dark + pale, dark_share, "the border is grey: no darker outline holds the creases"),
-        ]
-        for candidates, share, explained in attempts:
-            # Without marked creases all strokes that are not the outline itself have to be inside.
-            inside = creases if self._marked else [*edges, *dark, *pale]
-            ring = self._sheet_of(candidates, inside, share)
-            if ring is not None:
-                frame_free = self._without_frame(ring, candidates) if candidates is not edges else ring
-                return frame_free, explained
-        filled = self._filled_sheet(creases or [*dark, *pale])
-        if filled is not None:
-            return filled
-        rest = [*edges, *dark, *pale, *creases]
-        ring = self._sheet_of(rest, rest, _SHARE_ANY)
-        if ring is not None:
-            return ring, "the border is the outermost closed outline, since no stroke says that it is one"
-        raise PatternError("no border found: no closed outline, also not one of several lines, holds the creases")
-
-    def _sheet_of(self, candidates: list[int], inside: list[int], share: float) -> Ring | None:
-        if not candidates:
-            return None
-        best: tuple[float, Ring] | None = None
-        for ring in outer_rings(self._all, candidates, self._size)[:8]:
-            others = self._some(i for i in inside if i not in ring.members)
-            held = share_inside(ring.polygon, others, self._tolerance)
-            if held >= share and (best is None or held > best[0] + 1e-6):
-                best = held, ring
-        return None if best is None else best[1]
-
-    def _without_frame(self, sheet: Ring, candidates: list[int]) -> Ring:
-        """The innermost outline that still holds all marked creases: whatever is around it is a frame."""
-        creases = self._some(self._open(*CREASE_ROLES))
-        if not creases:
-            return sheet
-        box = shapely.box(*shapely.total_bounds([curve_line(curve) for curve in creases]))
-        curves = self._all
-        while True:
-            rest = [i for i in candidates if i not in sheet.members and not self._strokes[i].fate]
-            inner = [
-                ring
-                for group in touching_groups(curves, rest, self._tolerance)
-                if self._holds_box(group, box)
-                for ring in outer_rings(curves, group, self._size)
-                if ring.polygon.area < sheet.polygon.area
-                and shapely.distance(ring.polygon.exterior, sheet.polygon.exterior) > self._tolerance
-                and share_inside(ring.polygon, creases, self._tolerance) >= _SHARE_FRAMED
-            ]
-            if not inner:
-                return sheet
-            for i in sheet.members:
-                self._settle(i, "left out: a frame around the sheet")
-            sheet = max(inner, key=lambda ring: ring.polygon.area)
-
-    def _holds_box(self, group: list[int], box: shapely.Polygon) -> bool:
-        """Whether an outline made of ``group`` could hold most of ``box``. Cheap, so asked first."""
-        bounds = shapely.box(*shapely.total_bounds([curve_line(curve) for curve in self._some(group)]))
-        width, height = np.ptp(shapely.get_coordinates(box), axis=0)
-        slack = (1.0 - _SHARE_FRAMED) * max(width, height) + self._tolerance
-        return bool(shapely.covers(bounds.buffer(slack, join_style="mitre"), box))
-
-    def _filled_sheet(self, creases: list[int]) -> tuple[Ring, str] | None:
-        best: Ring | None = None
-        for shape in self._drawing.shapes:
-            if shape.stroke is not None or not shape.filled:
-                continue
-            for curve, _ in self._curves(shape, MAX_POINTS):
-                if not curve.closed:
-                    continue
-                rings = outer_rings([curve], [0], self._size)
-                if (
-                    rings
-                    and (best is None or rings[0].polygon.area > best.polygon.area)
-                    and share_inside(rings[0].polygon, self._some(creases), self._tolerance) >= _SHARE_NAMED
-                ):
-                    best = replace(rings[0], members=frozenset())
-        if best is None:
-            return None
-        return best, "the border is a filled shape without a stroke: no stroke closes around the creases"
 
     def _cut_along(self, sheet: Ring) -> None:
         """Split the undecided edge strokes that run along the border for a while; what is on it is border."""
@@ -242,9 +179,15 @@ class _Sheet:
                 ring
                 for group in touching_groups(curves, candidates, self._tolerance)
                 for ring in outer_rings(curves, group, self._size)
+                # Lines that happen to enclose something on their way are not its outline.
+                if self._covered(ring)
             ]
             holes = self._outermost(holes, rings)
         return holes
+
+    def _covered(self, ring: Ring) -> bool:
+        drawn = sum(shapely.length(curve_line(self._strokes[i].curve)) for i in ring.members)
+        return bool(drawn >= _COVERED * ring.polygon.exterior.length)
 
     def _outermost(self, holes: list[Ring], rings: list[Ring]) -> list[Ring]:
         """``holes`` and those of ``rings`` outside them, larger ones first: what falls out has no holes."""
@@ -267,34 +210,48 @@ class _Sheet:
     # ---- the rest
 
     def _leave_out_far(self, sheet: Ring, holes: Sequence[Ring]) -> None:
-        """What has no part on the paper."""
+        """What has no part on the paper: the rest of a border stroke beside it, and what lies in a hole."""
         grown = sheet.polygon.buffer(self._tolerance)
         shapely.prepare(grown)
         gaps = shapely.union_all([hole.polygon.buffer(self._tolerance) for hole in holes])
         shapely.prepare(gaps)
-        for i in self._open(*(set(Role) - {Role.FACET})):
+        for i in self._open(*(set(Role) - set(_LEFT_OUT))):
             curve = curve_line(self._strokes[i].curve)
             if not shapely.intersects(grown, curve):
-                self._settle(i, "left out: beside the sheet")
+                self._settle(i, _BESIDE)
             elif holes and shapely.covers(gaps, curve):
                 self._settle(i, "left out: inside a hole")
 
-    def _settle_rest(self) -> None:
-        for i in self._open(Role.FACET):
-            self._settle(i, "left out: facet line")
+    def _settle_rest(self, sheet: Ring, holes: Sequence[Ring]) -> None:
+        for role, fate in _LEFT_OUT.items():
+            for i in self._open(role):
+                self._settle(i, fate)
         for i in self._open(Role.CUT, Role.HOLE):
             self._settle(i, "left out: a cut that does not close is not supported")
         for i in self._open(Role.BORDER):
             self._settle(i, "left out: not part of a closed outline")
         for i in self._open(Role.DARK):
-            self._settle(i, "unassigned crease")
+            # Black beside marked creases is an edge of the paper, unless it would cut the sheet in two.
+            if self._marked and not self._spans(self._strokes[i].curve, sheet, holes):
+                self._settle(i, "left out: a cut inside the sheet, which is not supported yet")
+            else:
+                self._settle(i, "unassigned crease")
         pale = self._open(Role.PALE)
         other = self._marked or any(stroke.fate == "unassigned crease" for stroke in self._strokes)
         fate = "left out: auxiliary line, lighter than the creases" if other else "unassigned crease"
         for i in pale:
             self._settle(i, fate)
 
-    def _creases(self) -> list[Crease]:
+    def _spans(self, curve: Curve, sheet: Ring, holes: Sequence[Ring]) -> bool:
+        """Whether a line runs from an edge of the paper to an edge."""
+        if curve.closed:
+            return False
+        edges = shapely.multilinestrings([ring.polygon.exterior for ring in (sheet, *holes)])
+        reach = _ALONG * self._size
+        off = ~shapely.covers(sheet.polygon, shapely.points(curve.points[[0, -1]]))
+        return bool((off | (shapely.distance(edges, shapely.points(curve.points[[0, -1]])) <= reach)).all())
+
+    def _creases(self) -> tuple[list[Crease], list[str]]:
         marked = self._open(*CREASE_ROLES)
         plain = [i for i, stroke in enumerate(self._strokes) if stroke.fate == "unassigned crease"]
         # One look for all creases distinguishes nothing. Names are meant, also when there is but one.
@@ -309,29 +266,27 @@ class _Sheet:
             role = self._strokes[i].decision.role
             letters[i] = _LETTERS.get(role, "U")
             self._settle(i, role.value)
-        if not letters:
-            raise PatternError("no crease found: nothing is drawn inside the border that could be folded")
+        notes = [] if letters else [_NO_CREASE]
         faint = sum(self._strokes[i].opacity < 1.0 - 1e-9 for i in letters)
         if faint:
-            self._notes.append(
-                f"the opacity of {_count(faint, 'crease')} is not used (a fold angle in some programs)"
-            )
-        return [
+            notes.append(f"the opacity of {_count(faint, 'crease')} is not used (a fold angle in some programs)")
+        creases = [
             Crease(s.curve.points, s.curve.closed, letters[i], s.name, s.curve.beziers)
             for i, s in enumerate(self._strokes)
-            if i in letters
+            if i in letters and length_of(s.curve) > 0.0
         ]
+        return creases, notes
 
-    def _stroke_notes(self) -> list[str]:
-        groups = Counter((s.decision.detail, s.fate, s.decision.why) for s in self._strokes)
-        return [
-            f"{_count(count, 'stroke')} {detail}: {_plural(fate, count)} ({why})"
-            for (detail, fate, why), count in groups.items()
-        ]
+
+def _in_words(groups: Counter[tuple[str, str, str]]) -> list[str]:
+    return [
+        f"{_count(count, 'stroke')} {detail}: {_plural(fate, count)} ({why})"
+        for (detail, fate, why), count in groups.items()
+    ]
 
 
 def _count(number: int, word: str) -> str:
-    return f"{number} {word}" if number == 1 else f"{number} {word}s"
+    return f"{number:,} {word}" if number == 1 else f"{number:,} {word}s"
 
 
 def _plural(fate: str, count: int) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
+from ..arrays import FloatArray
 from .segments import Curve
 
 
@@ -40,10 +41,35 @@ class Decision:
 
 @dataclass(frozen=True, eq=False)
 class Stroke:
-    """One sampled subpath with what is thought of it; ``fate`` is what became of it, for the notes."""
+    """One line with what is thought of it.
+
+    count  how many strokes of the file it is made of, where they continue each other
+    fate   what became of it, for the notes
+    """
 
     curve: Curve
     decision: Decision
     name: str
-    opacity: float
+    opacity: float = 1.0
+    count: int = 1
     fate: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """All that a reader finds in a file. Drawing units, y up.
+
+    strokes  in the file's order
+    filled   (P,2) closed outlines of shapes that are filled and not stroked
+    page     x and y minimum, x and y maximum of the page, None when the file has none
+    unit_mm  millimetres in one unit, None when the file does not say
+    notes    what was decided on the way
+    conflicts  creases that the file gives as a mountain and as a valley, one sentence each
+    """
+
+    strokes: tuple[Stroke, ...]
+    filled: tuple[FloatArray, ...]
+    page: tuple[float, float, float, float] | None
+    unit_mm: float | None
+    notes: tuple[str, ...]
+    conflicts: tuple[str, ...] = ()

@@ -1,8 +1,8 @@
 """SVG drawings -> crease patterns.
 
 Units are the drawing's own (its viewBox), y is turned up about the viewBox: (x, y) -> (x, ymin + ymax - y).
-The steps: ``svg_xml`` reads safely, ``svg_walk`` finds what is drawn, ``segments`` samples it,
-``meaning`` says what each stroke means alone and ``sheets`` what all mean together.
+The steps: ``svg_xml`` reads safely, ``svg_walk`` finds what is drawn, ``svg_strokes`` samples it and
+asks ``meaning`` what each stroke means alone, and ``sheets`` says what all mean together.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ import shapely
 from ..errors import CurvefoldError, PatternError
 from .crease_pattern import CreasePattern
 from .read_options import ReadOptions
-from .sheets import make_pattern
+from .sheets import make_patterns
 from .source import read_source
+from .svg_strokes import lines_of
 from .svg_walk import read_drawing
 from .svg_xml import parse_svg_tree
 
@@ -31,7 +32,8 @@ def read_svg(
     """
     data, name = read_source(source)
     try:
-        return (make_pattern(read_drawing(parse_svg_tree(data))),)
+        lines = lines_of(read_drawing(parse_svg_tree(data)))
+        return make_patterns(lines, (options or ReadOptions()).border)
     except CurvefoldError as error:
         raise (error if name is None else error.in_file(name)) from error
     except (

@@ -152,3 +152,17 @@ def test_what_counts_as_a_corner() -> None:
     for degrees, is_corner in ((25.0, False), (35.0, True)):
         turn = np.radians(degrees)
         assert (turn > CORNER) == is_corner
+
+
+def test_a_zigzag_of_gentle_turns_stays_a_zigzag() -> None:
+    """The rows of a shallow Miura fold turn left and right by 17 degrees: they are straight lines."""
+    zigzag = np.array([(float(k), 0.15 * (k % 2)) for k in range(12)])
+    assert np.array_equal(sample_crease(solver.Crease(points=zigzag), 0.05), zigzag)
+
+
+def test_samples_of_a_wave_are_rounded() -> None:
+    x = np.linspace(0.0, 2 * np.pi, 17)
+    crease = solver.Crease(points=np.column_stack([x, np.sin(x)]))
+    sampled = sample_crease(crease, 0.05)
+    # Chords miss it by 0.019.
+    assert np.abs(np.sin(sampled[:, 0]) - sampled[:, 1]).max() < 4e-3

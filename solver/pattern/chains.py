@@ -1,4 +1,4 @@
-"""Edges -> the curves they are samples of: joined where two meet, and straight on where more do."""
+"""Edges, and strokes -> the lines that they are pieces of: joined where two meet, straight on where more do."""
 
 from __future__ import annotations
 
@@ -34,8 +34,9 @@ def joined_by_pairs(ends: IntArray, count: int) -> list[Path]:
 def joined_as_creases(
     points: FloatArray, ends: IntArray, kind: IntArray, known: BoolArray, corners: BoolArray
 ) -> list[Path]:
-    """Paths that are one crease each, in the order of their first edges.
+    """Paths of edges (E,2) that are one crease each, in the order of their first edges.
 
+    points   (N,2) vertices
     kind     (E,) only edges of one kind are joined
     known    (E,) whether the kind is a crease by the writer's word, and not just a letter
     corners  (N,) vertices that no line without such a word turns at, like those on the border
@@ -47,7 +48,41 @@ def joined_as_creases(
     # Two edges of a kind, among others: whether they are one crease is for the angle to say, unless it is known.
     loose = ~np.repeat(known, 2) & ((degree[at] > 2) | corners[at])
     partner[loose] = -1
-    return _walk(ends, _partners_straight_on(points, ends, kind, known, partner))
+    limit = np.where(np.repeat(known, 2), _SAME_CREASE, STRAIGHT_ON)
+    return _walk(ends, _partners_straight_on(_chords(points, ends), ends, kind, limit, partner))
+
+
+def joined_smoothly(ways: FloatArray, ends: IntArray, kind: IntArray, corner: float) -> list[Path]:
+    """Paths of strokes that continue each other, in the order of their first strokes.
+
+    ways    (2S,2) the direction in which each stroke leaves each of its ends
+    ends    (S,2) the place of each end, equal numbers where ends meet
+    kind    (S,) only strokes of one kind are joined: where two of it meet if they turn by ``corner`` radians at
+            most, where more do if they go straight on
+    """
+    partner = _partners_of_two(ends, kind, int(ends.max(initial=-1)) + 1)
+    two = np.flatnonzero(partner >= 0)
+    partner[two[_turns(ways[two], ways[partner[two]]) > corner]] = -1
+    # A corner of two is a corner, and not looked at again.
+    at, kinds = ends.ravel(), np.repeat(kind, 2)
+    _, group, size = np.unique(np.column_stack([at, kinds]), axis=0, return_inverse=True, return_counts=True)
+    limit = np.where(size[group.reshape(-1)] > 2, STRAIGHT_ON, 0.0)
+    return _walk(ends, _partners_straight_on(ways, ends, kind, limit, partner))
+
+
+def walked(ends: IntArray, partner: IntArray) -> list[Path]:
+    """Every edge (E,2) in one path; ``partner`` (2E,) says with which end each end is joined, -1 with none."""
+    return _walk(ends, partner)
+
+
+def _turns(one: FloatArray, other: FloatArray) -> FloatArray:
+    """(N,) how much a line turns between one way out, taken backwards, and the other; radians."""
+    cross = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
+    return np.asarray(np.abs(np.arctan2(cross, -np.sum(one * other, axis=1))))
+
+
+def _chords(points: FloatArray, ends: IntArray) -> FloatArray:
+    return np.asarray(points[ends[:, ::-1].ravel()] - points[ends.ravel()])
 
 
 def without_straight(points: FloatArray, closed: bool) -> FloatArray:
@@ -79,13 +114,14 @@ def _partners_of_two(ends: IntArray, kind: IntArray, count: int) -> IntArray:
 
 
 def _partners_straight_on(
-    points: FloatArray, ends: IntArray, kind: IntArray, known: BoolArray, partner: IntArray
+    ways: FloatArray, ends: IntArray, kind: IntArray, limit: FloatArray, partner: IntArray
 ) -> IntArray:
-    """``partner`` with the ends that have none joined to those of their kind that go on most straight."""
+    """``partner`` with the ends that have none joined to those of their kind that go on most straight.
+
+    ways (2E,2) as each end is left; limit (2E,) how much a line may turn there, radians
+    """
     free = np.flatnonzero(partner < 0)
-    at, far = ends.ravel()[free], ends[:, ::-1].ravel()[free]
-    kinds = np.repeat(kind, 2)[free]
-    way = points[far] - points[at]
+    at, kinds, way = ends.ravel()[free], np.repeat(kind, 2)[free], ways[free]
     angle = np.mod(np.arctan2(way[:, 1], way[:, 0]), 2 * np.pi)
     # Ends of one kind at one vertex, each group on a stretch of its own of one line, with room to go around.
     _, group = np.unique(np.column_stack([at, kinds]), axis=0, return_inverse=True)
@@ -100,8 +136,7 @@ def _partners_straight_on(
     nearer = np.where(np.abs(around[before] - target) <= np.abs(around[after] - target), before, after)
     best = owner[nearer]
     turn = np.abs(around[nearer] - target)
-    limit = np.where(np.repeat(known, 2)[free], _SAME_CREASE, STRAIGHT_ON)
-    mutual = (best[best] == np.arange(len(free))) & (best != np.arange(len(free))) & (turn <= limit)
+    mutual = (best[best] == np.arange(len(free))) & (best != np.arange(len(free))) & (turn <= limit[free])
     result = partner.copy()
     result[free[mutual]] = free[best[mutual]]
     return result

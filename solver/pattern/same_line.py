@@ -1,0 +1,92 @@
+"""The same line drawn more than once: a copy too many, or two meanings for one crease."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import shapely
+
+from .rings import curve_line, near_pairs
+from .stroke import Decision, Role, Stroke
+
+#: Lines of these roles may be the same crease.
+_CREASES = (Role.MOUNTAIN, Role.VALLEY, Role.CREASE)
+#: Contradictions that are told one by one.
+_MOST_SAID = 20
+#: Copies of one line lie this near to each other, in tolerances.
+_NEAR = 2.0
+
+
+def settle_same_lines(strokes: Sequence[Stroke], tolerance: float) -> tuple[list[Stroke], list[str], list[str]]:
+    """The strokes without copies; notes; and what is drawn as a mountain and as a valley, in words.
+
+    A crease that is both has no side of its own. tolerance: how near two lines are the same, drawing units.
+    """
+    exact = _exact_copies(strokes)
+    creases = [k for k, s in enumerate(strokes) if s.decision.role in _CREASES and k not in exact]
+    copies = len(exact)
+    dropped: set[int] = set()
+    changed: dict[int, Stroke] = {}
+    conflicts: list[str] = []
+    lines = np.array([curve_line(strokes[k].curve) for k in creases], dtype=object)
+    middles = shapely.line_interpolate_point(lines, 0.5, normalized=True)
+    first, second = near_pairs(shapely.STRtree(lines), middles, _NEAR * tolerance) if len(lines) else ((), ())
+    for a, b in zip(np.array(first).tolist(), np.array(second).tolist(), strict=True):
+        # Each pair once, the later line against the earlier one.
+        if a <= b or a in dropped or b in dropped or not _same(lines[a], lines[b], tolerance):
+            continue
+        one, other = creases[b], creases[a]
+        dropped.add(a)
+        kept = changed.get(one, strokes[one])
+        roles = {kept.decision.role, strokes[other].decision.role}
+        if roles == {Role.MOUNTAIN, Role.VALLEY}:
+            conflicts.append(_in_words(kept, strokes[other], lines[b]))
+            decision = Decision(Role.CREASE, "drawn as a mountain and as a valley", kept.decision.detail)
+            changed[one] = replace(kept, decision=decision)
+        else:
+            copies += 1
+            if kept.decision.role is Role.CREASE and "drawn as a mountain" not in kept.decision.why:
+                changed[one] = replace(kept, decision=strokes[other].decision)
+    notes = [f"{conflict}; it is left unassigned" for conflict in conflicts[:_MOST_SAID]]
+    if len(conflicts) > _MOST_SAID:
+        notes.append(f"{len(conflicts) - _MOST_SAID:,} more lines are drawn as mountains and as valleys")
+    if copies:
+        notes.append(f"{'1 line was' if copies == 1 else f'{copies:,} lines were'} drawn twice and count once")
+    out = exact | {creases[a] for a in dropped}
+    return [changed.get(k, stroke) for k, stroke in enumerate(strokes) if k not in out], notes, conflicts
+
+
+def _exact_copies(strokes: Sequence[Stroke]) -> set[int]:
+    """Creases that are the same points of the same role as an earlier one, in either direction."""
+    seen: set[tuple[Role, bytes]] = set()
+    copies = set()
+    for k, stroke in enumerate(strokes):
+        if stroke.decision.role not in _CREASES:
+            continue
+        points = stroke.curve.points
+        key = stroke.decision.role, min(points.tobytes(), points[::-1].tobytes())
+        if key in seen:
+            copies.add(k)
+        seen.add(key)
+    return copies
+
+
+def _same(one: shapely.LineString, other: shapely.LineString, tolerance: float) -> bool:
+    """Whether two lines cover each other."""
+    if abs(one.length - other.length) > 4.0 * _NEAR * tolerance + 0.01 * one.length:
+        return False
+    return bool(
+        shapely.covers(one.buffer(_NEAR * tolerance), other)
+        and shapely.covers(other.buffer(_NEAR * tolerance), one)
+    )
+
+
+def _in_words(one: Stroke, other: Stroke, line: shapely.LineString) -> str:
+    x, y = shapely.get_coordinates(line.interpolate(0.5, normalized=True))[0]
+    names = " and ".join(
+        f"{stroke.name or f'a line {stroke.decision.detail}'} ({stroke.decision.role.value.split()[0]})"
+        for stroke in (one, other)
+    )
+    return f"the same line near ({x:.4g}, {y:.4g}) is drawn as a mountain and as a valley, by {names}"

@@ -1,0 +1,307 @@
+"""Which outlines of a drawing are sheets of paper: drawn ones, several of them, or else the page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import shapely
+
+from ..arrays import FloatArray
+from ..errors import PatternError
+from .rings import JOIN, Gap, Geometries, Ring, curve_line, loose_ends, outer_rings, share_inside, touching_groups
+from .segments import Curve
+from .stroke import CREASE_ROLES, EDGE_ROLES, Role, Stroke
+
+#: How much of the creases (by length) closed outlines must hold to be the border. Strokes that say they are
+#: an edge need less agreement than black ones, these less than a drawing in which nothing says anything.
+_SHARE_NAMED = 0.9
+_SHARE_BLACK = 0.5
+_SHARE_ANY = 0.95
+#: An outline inside another one that holds this share of the creases is the sheet, and the outer one a frame.
+_SHARE_FRAMED = 0.99
+#: How far ends of a border may be apart, parts of the drawing's longer side: as near as ends are joined anyway,
+#: then as far as ends of creases are snapped, and at last, where nothing else closes, by what is hardly meant.
+_REACHES = (JOIN, 2e-3, 2e-2)
+#: The page holds less than this share of what is drawn when the drawing has slipped off it.
+_SHARE_PAGE = 0.5
+#: Evidence that a line is a crease which does not keep it from being the border, when nothing else is.
+_MILD = ("hue", "dash pattern", "edges_assignment")
+#: Sheets of one file. A drawing of more outlines is no drawing of sheets.
+MAX_SHEETS = 500
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """The sheets of a drawing, in the order of the strokes that they are made of.
+
+    frames  indices of strokes that are frames around sheets
+    notes   why these are the sheets
+    """
+
+    sheets: tuple[Ring, ...]
+    frames: frozenset[int] = frozenset()
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What sheets are searched in.
+
+    strokes  of the drawing
+    filled   outlines (P,2) of shapes that are filled and not stroked
+    page     x and y minimum, x and y maximum, or None
+    size     longer side of the drawing
+    marked   whether anything says "I am a crease"; otherwise black lines are the creases
+    """
+
+    strokes: Sequence[Stroke]
+    filled: Sequence[FloatArray]
+    page: tuple[float, float, float, float] | None
+    size: float
+    marked: bool
+    curves: list[Curve] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.curves.extend(stroke.curve for stroke in self.strokes)
+
+    @property
+    def tolerance(self) -> float:
+        return JOIN * self.size
+
+    def having(self, roles: Iterable[Role]) -> list[int]:
+        """Indices of the strokes with these roles."""
+        wanted = set(roles)
+        return [i for i, stroke in enumerate(self.strokes) if stroke.decision.role in wanted]
+
+    def some(self, indices: Iterable[int]) -> list[Curve]:
+        return [self.curves[i] for i in indices]
+
+
+def find_sheets(search: Search, border: str) -> Found:
+    """The sheets. border: "auto", "outline" or "page". Raises PatternError, with the place of an open border."""
+    if border == "page":
+        return _page(search, "the page is the sheet, as asked")
+    for reach in _REACHES[:2]:
+        found = _drawn(search, reach) or _filled(search) or _outermost(search, reach)
+        if found is not None:
+            return found
+    found = _drawn(search, _REACHES[2])
+    if found is not None:
+        return found
+    gap = _open_place(search)
+    if gap is not None:
+        x, y = gap.place.tolist()
+        raise PatternError(
+            f"the border does not close: it is open by {gap.width:.4g}; close it, or choose the page as the sheet",
+            element="border",
+            place=(x, y),
+        )
+    if border == "outline":
+        raise PatternError(
+            "no border found: no closed outline holds the creases; draw one, or choose the page as the sheet"
+        )
+    return _page(search, "no border is drawn: the page is the sheet")
+
+
+# ---- drawn outlines
+
+
+def _drawn(search: Search, reach: float) -> Found | None:
+    """Outlines of strokes that say they are an edge, then with black ones, then with grey ones."""
+    edges, dark, pale = search.having(EDGE_ROLES), search.having([Role.DARK]), search.having([Role.PALE])
+    creases = search.having(CREASE_ROLES)
+    dark_share = _SHARE_BLACK if search.marked else _SHARE_ANY
+    attempts = [
+        (edges, _SHARE_NAMED, ""),
+        (edges + dark, dark_share, ""),
+        (edges + dark + pale, dark_share, "the border is grey: no darker outline holds the creases"),
+        (search.having([Role.BORDER]), _SHARE_BLACK, ""),
+    ]
+    tried: set[tuple[int, float]] = set()
+    for candidates, share, explained in attempts:
+        if not candidates or (len(candidates), share) in tried:
+            continue
+        tried.add((len(candidates), share))
+        # Without marked creases all strokes that are not the outlines themselves have to be inside.
+        inside = creases if search.marked else [*edges, *dark, *pale]
+        rings = _holding(search, candidates, inside, share, reach)
+        if rings:
+            frames: frozenset[int] = frozenset()
+            if candidates is not edges:
+                rings, frames = _without_frames(search, rings, candidates)
+            return _found(rings, frames, explained)
+    return None
+
+
+def _outermost(search: Search, reach: float) -> Found | None:
+    """The outermost outlines of all lines, where no stroke says that it is an edge."""
+    told = {i for i in search.having(CREASE_ROLES) if search.strokes[i].decision.why not in _MILD}
+    lines = [i for i in search.having(set(Role) - {Role.ASIDE, Role.FACET}) if i not in told]
+    explained = "the border is the outermost closed outline, since no stroke says that it is one"
+    for candidates in (lines, [*lines, *search.having([Role.FACET])]):
+        rings = _holding(search, candidates, [*candidates, *told], _SHARE_ANY, reach)
+        on_rings = frozenset().union(*(ring.members for ring in rings))
+        # A closed crease that holds nothing is no sheet if there is a page for it to be drawn on.
+        alone = search.marked and search.page is not None and len(on_rings) == len(candidates) + len(told)
+        if rings and not alone:
+            return _found(rings, frozenset(), explained)
+    return None
+
+
+def _holding(
+    search: Search, candidates: Sequence[int], inside: Sequence[int], share: float, reach: float
+) -> list[Ring]:
+    """The outlines of ``candidates`` that hold ``share`` of the lines ``inside`` together: those that hold any."""
+    if not candidates:
+        return []
+    rings = outer_rings(search.curves, candidates, search.size, reach)[:MAX_SHEETS]
+    if not rings:
+        return []
+    on_rings = frozenset().union(*(ring.members for ring in rings))
+    lines = np.array([curve_line(search.curves[i]) for i in inside if i not in on_rings], dtype=object)
+    if not len(lines):
+        return rings
+    total = float(shapely.length(lines).sum())
+    tree = shapely.STRtree(lines)
+    held = np.array([_length_inside(ring.polygon.buffer(search.tolerance), lines, tree) for ring in rings])
+    if held.sum() < share * total:
+        # One of several outlines that touch nothing may be it alone, as before others were counted in.
+        return []
+    return [ring for ring, length in zip(rings, held.tolist(), strict=True) if length > search.tolerance]
+
+
+def _length_inside(polygon: shapely.Polygon, lines: Geometries, tree: shapely.STRtree) -> float:
+    shapely.prepare(polygon)
+    near = lines[tree.query(polygon)]
+    whole = shapely.covers(polygon, near)
+    cut = near[~whole & shapely.intersects(polygon, near)]
+    return float(shapely.length(near[whole]).sum() + shapely.length(shapely.intersection(cut, polygon)).sum())
+
+
+def _without_frames(
+    search: Search, rings: list[Ring], candidates: Sequence[int]
+) -> tuple[list[Ring], frozenset[int]]:
+    """The innermost outlines that still hold all marked creases: whatever is around them is a frame."""
+    creases = search.having(CREASE_ROLES)
+    if not creases:
+        return rings, frozenset()
+    kept: list[Ring] = []
+    frames: set[int] = set()
+    waiting = list(reversed(rings))
+    while waiting:
+        ring = waiting.pop()
+        rest = [i for i in candidates if i not in ring.members and i not in frames]
+        mine = [i for i in creases if shapely.intersects(ring.polygon, curve_line(search.curves[i]))]
+        inner = _inside(search, ring, rest, mine)
+        if inner:
+            frames |= ring.members
+            waiting.extend(reversed(inner))
+        else:
+            kept.append(ring)
+    return kept, frozenset(frames)
+
+
+def _inside(search: Search, sheet: Ring, rest: Sequence[int], creases: Sequence[int]) -> list[Ring]:
+    """The outlines apart from ``sheet`` inside it that hold all of its creases together."""
+    lines = np.array([curve_line(search.curves[i]) for i in creases], dtype=object)
+    if not len(lines):
+        return []
+    tree = shapely.STRtree(lines)
+    rings = []
+    for group in touching_groups(search.curves, rest, search.tolerance):
+        box = shapely.box(*shapely.total_bounds([curve_line(curve) for curve in search.some(group)]))
+        if not len(tree.query(box)):
+            continue
+        rings += [
+            ring
+            for ring in outer_rings(search.curves, group, search.size)
+            if ring.polygon.area < sheet.polygon.area
+            and shapely.distance(ring.polygon.exterior, sheet.polygon.exterior) > search.tolerance
+        ]
+    held = [_length_inside(ring.polygon.buffer(search.tolerance), lines, tree) for ring in rings]
+    if sum(held) < _SHARE_FRAMED * float(shapely.length(lines).sum()):
+        return []
+    return [ring for ring, length in zip(rings, held, strict=True) if length > search.tolerance]
+
+
+def _found(rings: Sequence[Ring], frames: frozenset[int], explained: str) -> Found:
+    notes = [explained] if explained else []
+    for ring in rings:
+        for gap in ring.gaps:
+            x, y = gap.place.tolist()
+            notes.append(f"the border was open by {gap.width:.4g} near ({x:.4g}, {y:.4g}) and was closed there")
+    ordered = sorted(rings, key=lambda ring: min(ring.members, default=0))
+    return Found(tuple(ordered), frames, tuple(notes))
+
+
+# ---- no drawn outline
+
+
+def _filled(search: Search) -> Found | None:
+    """The smallest filled shape that holds the creases, nearly all of them if there is one."""
+    lines = search.having(CREASE_ROLES) or search.having([Role.DARK, Role.PALE])
+    if not lines:
+        return None
+    creases = search.some(lines)
+    rings: list[tuple[bool, float, Ring]] = []
+    for points in search.filled:
+        for ring in outer_rings([Curve(points, True, None)], [0], search.size)[:1]:
+            held = share_inside(ring.polygon, creases, search.tolerance)
+            if held >= _SHARE_NAMED:
+                rings.append((held < _SHARE_FRAMED, ring.polygon.area, replace(ring, members=frozenset())))
+    if not rings:
+        return None
+    why = "the border is a filled shape without a stroke: no stroke closes around the creases"
+    return Found((min(rings, key=lambda entry: entry[:2])[2],), notes=(why,))
+
+
+def _open_place(search: Search) -> Gap | None:
+    """Where a border is open that would hold the creases if it were closed, and how wide; None without one."""
+    edges = search.having(EDGE_ROLES)
+    candidates = edges + search.having([Role.DARK]) if search.marked or edges else []
+    creases = search.some(search.having(CREASE_ROLES))
+    if not creases:
+        return None
+    for group in touching_groups(search.curves, candidates, search.tolerance):
+        curves = search.some(i for i in group if not search.curves[i].closed)
+        if not curves:
+            continue
+        ends = np.vstack([curve.points[[0, -1]] for curve in curves])
+        loose = loose_ends(ends, search.tolerance)
+        if len(loose) != 2:
+            continue
+        a, b = ends[loose]
+        closing = Curve(np.array([a, b]), False, None)
+        for ring in outer_rings([*curves, closing], range(len(curves) + 1), search.size)[:1]:
+            if share_inside(ring.polygon, creases, search.tolerance) >= _SHARE_NAMED:
+                return Gap(0.5 * (a + b), float(np.hypot(*(b - a))))
+    return None
+
+
+def _page(search: Search, explained: str) -> Found:
+    """The page, or the box of what is drawn where there is none or the drawing lies beside it."""
+    drawn = search.having(set(Role) - {Role.ASIDE})
+    lines = np.array([curve_line(curve) for curve in search.some(drawn)], dtype=object)
+    box, where = search.page, "the page"
+    if box is not None and len(lines):
+        page = shapely.box(*box)
+        inside = float(shapely.length(shapely.intersection(lines, page)).sum())
+        if inside < _SHARE_PAGE * float(shapely.length(lines).sum()):
+            box = None
+            explained = explained.replace("the page is", "the drawing lies off its page, and its own box is")
+    elif box is None:
+        explained = explained.replace("the page is", "the file has no page, and the box of what is drawn is")
+    if box is None:
+        where, box = "the box", tuple(shapely.total_bounds(lines).tolist())
+    x0, y0, x1, y1 = box
+    if not (x1 - x0 > search.tolerance and y1 - y0 > search.tolerance):
+        raise PatternError(f"no border found: none is drawn, and {where} has no area")
+    corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+    polygon = shapely.Polygon(corners)
+    band = polygon.exterior.buffer(2.0 * search.tolerance)
+    shapely.prepare(band)
+    members = [i for i in drawn if shapely.covers(band, curve_line(search.curves[i]))]
+    size = f"{x1 - x0:.4g} × {y1 - y0:.4g}"
+    return Found((Ring(corners, polygon, frozenset(members)),), notes=(f"{explained} ({size})",))
