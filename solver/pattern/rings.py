@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 
 from ..arrays import FloatArray, IntArray
 from ..errors import PatternError
+from .places import line_strings
 from .segments import Curve
 
 #: Ends closer than this, relative to the drawing's longer side, are joined into one outline.
@@ -65,8 +66,8 @@ def outer_rings(curves: Sequence[Curve], indices: Sequence[int], size: float, re
         if polygon.is_valid and polygon.area > tolerance * tolerance:
             return [Ring(curves[indices[0]].points, polygon, frozenset(indices))]
     rows, gaps = _joined_rows(curves, indices, tolerance, max(reach * size, tolerance))
-    lines = [shapely.LineString(row) for row in rows.values()]
-    if not lines:
+    lines = line_strings(list(rows.values()))
+    if not len(lines):
         return []
     _check_crossings(lines)
     faces = shapely.get_parts(shapely.polygonize([_noded(lines)]))
@@ -166,7 +167,7 @@ def _reached(
                 gaps.append(Gap(0.5 * (ends[a] + ends[b]), float(distance[k, 1])))
                 ends[b] = ends[a]
                 left -= {a, b}
-    lines = [curve_line(curves[i]) for i in indices]
+    lines = curve_lines([curves[i] for i in indices])
     tree = shapely.STRtree(lines)
     for k in sorted(left):
         point = shapely.Point(ends[k])
@@ -183,16 +184,16 @@ def _reached(
     return ends, gaps
 
 
-def _noded(lines: Sequence[shapely.LineString]) -> shapely.Geometry:
+def _noded(lines: Geometries) -> shapely.Geometry:
     """The lines cut where they meet."""
-    together = shapely.MultiLineString(lines)
+    together = shapely.multilinestrings(lines)
     try:
         return shapely.node(together)
     except shapely.GEOSException:  # lines that nearly coincide can be too much for it
         return shapely.union_all([together])
 
 
-def _check_crossings(lines: Sequence[shapely.LineString]) -> None:
+def _check_crossings(lines: Geometries) -> None:
     """Raises PatternError when cutting the lines at each other would take too long."""
     coordinates, owner = shapely.get_coordinates(lines, return_index=True)
     joined = owner[:-1] == owner[1:]
@@ -231,7 +232,7 @@ def near_pairs(tree: shapely.STRtree, lines: Geometries, distance: float) -> tup
 
 def _members(rows: dict[int, FloatArray], polygon: shapely.Polygon, tolerance: float) -> frozenset[int]:
     """The lines that lie on the polygon's exterior over their whole length."""
-    lines = np.array([shapely.LineString(row) for row in rows.values()])
+    lines = line_strings(list(rows.values()))
     band = polygon.exterior.buffer(2.0 * tolerance)
     shapely.prepare(band)
     return frozenset(i for i, inside in zip(rows, shapely.covers(band, lines), strict=True) if inside)
@@ -266,11 +267,17 @@ def curve_line(curve: Curve) -> shapely.LineString:
     return shapely.LineString(points)
 
 
+def curve_lines(curves: Sequence[Curve]) -> Geometries:
+    """The curves as lines (N,), closed ones with their first point repeated."""
+    rows = [np.vstack([c.points, c.points[:1]]) if c.closed else c.points for c in curves]
+    return line_strings(rows)
+
+
 def share_inside(polygon: shapely.Polygon, curves: Sequence[Curve], tolerance: float) -> float:
     """How much of the curves' length lies in ``polygon``, 0 to 1; 1 when there are none."""
     if not curves:
         return 1.0
-    lines = np.array([curve_line(curve) for curve in curves])
+    lines = curve_lines(curves)
     grown = polygon.buffer(tolerance)
     shapely.prepare(grown)
     total = float(shapely.length(lines).sum())
@@ -286,7 +293,7 @@ def touching_groups(curves: Sequence[Curve], indices: Sequence[int], tolerance: 
     """``indices`` in groups whose curves touch each other, directly or through others."""
     if not indices:
         return []
-    lines = np.array([curve_line(curves[i]) for i in indices])
+    lines = curve_lines([curves[i] for i in indices])
     tree = shapely.STRtree(lines)
     first, second = near_pairs(tree, lines, tolerance)
     graph = coo_matrix((np.ones(len(first)), (first, second)), shape=(len(lines), len(lines)))

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import shapely
 
-from .rings import curve_line, near_pairs
+from .rings import curve_lines, near_pairs
 from .stroke import Decision, Role, Stroke
 
 #: Lines of these roles may be the same crease.
@@ -30,7 +30,7 @@ def settle_same_lines(strokes: Sequence[Stroke], tolerance: float) -> tuple[list
     dropped: set[int] = set()
     changed: dict[int, Stroke] = {}
     conflicts: list[str] = []
-    lines = np.array([curve_line(strokes[k].curve) for k in creases], dtype=object)
+    lines = curve_lines([strokes[k].curve for k in creases])
     middles = shapely.line_interpolate_point(lines, 0.5, normalized=True)
     first, second = near_pairs(shapely.STRtree(lines), middles, _NEAR * tolerance) if len(lines) else ((), ())
     for a, b in zip(np.array(first).tolist(), np.array(second).tolist(), strict=True):

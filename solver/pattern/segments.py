@@ -16,8 +16,15 @@ from ..errors import PatternError
 #: Largest distance between a curve and its samples, relative to the drawing's longer side. Half of the
 #: promised 1e-5, because the side is measured on control points, which may lie outside the curve.
 SAGITTA = 0.5e-5
-#: Samples of a curved segment at least, however flat it is.
+#: Drawings of thousands of curves have short ones: a cubic shorter than this part of the drawing's longer side may
+#: be missed by this part of its own length.
+_SHORT = 1e-2
+_SAGITTA_OF_SHORT = 4e-3
+#: Samples of a curved segment at least, however flat it is; of one that is short beside the drawing fewer, in
+#: proportion: this many on a segment as long as the drawing, and never fewer than the third number.
 MIN_SAMPLES = 16
+_SAMPLES_OF_SIZE = 320
+LEAST_SAMPLES = 5
 #: Samples of a straight one: its ends.
 _STRAIGHT_SAMPLES = 2
 #: Points of a whole drawing. A drawing that needs more is not a crease pattern a net could carry.
@@ -123,27 +130,53 @@ def sample(subpath: Subpath, size: float, budget: int) -> Curve | None:
 
     ``size`` is the drawing's longer side in the same units; at most ``budget`` points. Raises PatternError.
     """
-    counts = _sample_counts(subpath.segments, size)
-    if np.maximum(counts - 1, 0).sum() > budget:
-        raise PatternError(f"the drawing needs more than {MAX_POINTS:,} points")
-    segments = [subpath.segments[k] for k in np.flatnonzero(counts)]
-    counts = counts[counts > 0]
-    pieces: list[FloatArray] = []
-    beziers: list[FloatArray] | None = []
-    for segment, count, points in zip(segments, counts, _sampled(segments, counts), strict=True):
-        pieces.append(points if not pieces else points[1:])
-        if beziers is not None:
-            cubics = _as_cubics(segment, count == _STRAIGHT_SAMPLES, ARC_AS_CUBICS * size)
-            if cubics is None:
-                beziers = None
-            else:
-                beziers.extend(cubics)
-    if not pieces:
+    return sample_all([subpath], [None], size, budget)[0]
+
+
+def sample_all(
+    subpaths: Sequence[Subpath], elements: Sequence[str | None], size: float, budget: int
+) -> list[Curve | None]:
+    """Each of ``subpaths`` as points, None for one without length.
+
+    elements  whose subpath each is, for the error
+    size      the drawing's longer side in the same units
+    budget    points of all together at most. Raises PatternError when they need more.
+    """
+    segments = [segment for subpath in subpaths for segment in subpath.segments]
+    counts = _sample_counts(segments, size)
+    starts = np.concatenate([[0], np.cumsum([len(subpath.segments) for subpath in subpaths])]).astype(np.int64)
+    needed = np.concatenate([[0], np.cumsum(np.maximum(counts - 1, 0))])[starts[1:]]
+    if len(needed) and needed[-1] > budget:
+        raise PatternError(
+            f"the drawing needs more than {MAX_POINTS:,} points",
+            element=elements[int(np.searchsorted(needed, budget, side="right"))],
+        )
+    kept = np.flatnonzero(counts)
+    rows = dict(zip(kept.tolist(), _sampled([segments[k] for k in kept], counts[kept]), strict=True))
+    which = counts.tolist()
+    return [
+        _assembled([(segments[k], which[k], rows[k]) for k in range(first, last) if which[k]], subpath.closed, size)
+        for subpath, first, last in zip(subpaths, starts[:-1].tolist(), starts[1:].tolist(), strict=True)
+    ]
+
+
+def _assembled(parts: Sequence[tuple[Segment, int, FloatArray]], closed: bool, size: float) -> Curve | None:
+    """A curve of sampled segments, each with how many samples it has."""
+    if not parts:
         return None
-    points = np.vstack(pieces)
+    beziers: list[FloatArray] | None = []
+    for segment, count, _ in parts:
+        cubics = _as_cubics(segment, count == _STRAIGHT_SAMPLES, ARC_AS_CUBICS * size)
+        if cubics is None:
+            beziers = None
+            break
+        beziers.extend(cubics)
+    if len(parts) == 1 and parts[0][1] == _STRAIGHT_SAMPLES:
+        return Curve(parts[0][2], False, np.array(beziers))
+    points = np.vstack([parts[0][2], *(row[1:] for _, _, row in parts[1:])])
     points = points[np.concatenate([[True], (np.diff(points, axis=0) != 0.0).any(axis=1)])]
     joined = bool(np.hypot(*(points[0] - points[-1])) <= STRAIGHT * size)
-    closed = (subpath.closed or joined) and len(points) >= 4
+    closed = (closed or joined) and len(points) >= 4
     if closed and joined:
         points = points[:-1]
     if len(points) < 2:
@@ -163,17 +196,22 @@ def _sample_counts(segments: Sequence[Segment], size: float) -> IntArray:
     with np.errstate(divide="ignore", invalid="ignore"):
         # |B''| <= 6 max |second difference|, and a chord's sagitta is at most |B''| h^2 / 8.
         bend = controls[:, :-2] - 2 * controls[:, 1:-1] + controls[:, 2:]
-        pieces = np.sqrt(6.0 * np.hypot(bend[..., 0], bend[..., 1]).max(axis=1) / (8.0 * SAGITTA * size))
-        usual = pieces < MAX_POINTS
-        counts[where] = np.where(
-            usual, np.maximum(np.ceil(np.where(usual, pieces, 0.0)) + 1, MIN_SAMPLES), _TOO_MANY
+        length = np.hypot(*np.moveaxis(np.diff(controls, axis=1), 2, 0)).sum(axis=1)
+        sagitta = np.where(
+            length < _SHORT * size, np.maximum(SAGITTA * size, _SAGITTA_OF_SHORT * length), SAGITTA * size
         )
+        pieces = np.sqrt(6.0 * np.hypot(bend[..., 0], bend[..., 1]).max(axis=1) / (8.0 * sagitta))
+        usual = pieces < MAX_POINTS
+        least = np.clip(np.ceil(_SAMPLES_OF_SIZE * length / size), LEAST_SAMPLES, MIN_SAMPLES)
+        counts[where] = np.where(usual, np.maximum(np.ceil(np.where(usual, pieces, 0.0)) + 1, least), _TOO_MANY)
     for k in np.flatnonzero(~straight):
         if segments[k].kind == "arc":
             counts[k] = _arc_sample_count(segments[k], SAGITTA * size)
-    counts[straight] = [
-        _STRAIGHT_SAMPLES * (segments[k].start != segments[k].end).any() for k in np.flatnonzero(straight)
-    ]
+    which = np.flatnonzero(straight)
+    if len(which):
+        begin = np.array([segments[k].start for k in which])
+        end = np.array([segments[k].end for k in which])
+        counts[which] = _STRAIGHT_SAMPLES * (begin != end).any(axis=1)
     return counts
 
 

@@ -10,7 +10,7 @@ import shapely
 
 from ..arrays import FloatArray
 from ..errors import PatternError
-from .rings import JOIN, Gap, Geometries, Ring, curve_line, loose_ends, outer_rings, share_inside, touching_groups
+from .rings import JOIN, Gap, Geometries, Ring, curve_lines, loose_ends, outer_rings, share_inside, touching_groups
 from .segments import Curve
 from .stroke import CREASE_ROLES, EDGE_ROLES, Role, Stroke
 
@@ -160,7 +160,7 @@ def _holding(
     if not rings:
         return []
     on_rings = frozenset().union(*(ring.members for ring in rings))
-    lines = np.array([curve_line(search.curves[i]) for i in inside if i not in on_rings], dtype=object)
+    lines = curve_lines([search.curves[i] for i in inside if i not in on_rings])
     if not len(lines):
         return rings
     total = float(shapely.length(lines).sum())
@@ -187,13 +187,14 @@ def _without_frames(
     creases = search.having(CREASE_ROLES)
     if not creases:
         return rings, frozenset()
+    lines = curve_lines(search.some(creases))
     kept: list[Ring] = []
     frames: set[int] = set()
     waiting = list(reversed(rings))
     while waiting:
         ring = waiting.pop()
         rest = [i for i in candidates if i not in ring.members and i not in frames]
-        mine = [i for i in creases if shapely.intersects(ring.polygon, curve_line(search.curves[i]))]
+        mine = np.array(creases)[shapely.intersects(ring.polygon, lines)].tolist()
         inner = _inside(search, ring, rest, mine)
         if inner:
             frames |= ring.members
@@ -205,13 +206,13 @@ def _without_frames(
 
 def _inside(search: Search, sheet: Ring, rest: Sequence[int], creases: Sequence[int]) -> list[Ring]:
     """The outlines apart from ``sheet`` inside it that hold all of its creases together."""
-    lines = np.array([curve_line(search.curves[i]) for i in creases], dtype=object)
+    lines = curve_lines(search.some(creases))
     if not len(lines):
         return []
     tree = shapely.STRtree(lines)
     rings = []
     for group in touching_groups(search.curves, rest, search.tolerance):
-        box = shapely.box(*shapely.total_bounds([curve_line(curve) for curve in search.some(group)]))
+        box = shapely.box(*shapely.total_bounds(curve_lines(search.some(group))))
         if not len(tree.query(box)):
             continue
         rings += [
@@ -283,7 +284,7 @@ def _open_place(search: Search) -> Gap | None:
 def _page(search: Search, explained: str) -> Found:
     """The page, or the box of what is drawn where there is none or the drawing lies beside it."""
     drawn = search.having(set(Role) - {Role.ASIDE})
-    lines = np.array([curve_line(curve) for curve in search.some(drawn)], dtype=object)
+    lines = curve_lines(search.some(drawn))
     box, where = search.page, "the page"
     if box is not None and len(lines):
         page = shapely.box(*box)
@@ -302,6 +303,6 @@ def _page(search: Search, explained: str) -> Found:
     polygon = shapely.Polygon(corners)
     band = polygon.exterior.buffer(2.0 * search.tolerance)
     shapely.prepare(band)
-    members = [i for i in drawn if shapely.covers(band, curve_line(search.curves[i]))]
+    members = np.array(drawn, dtype=np.int64)[shapely.covers(band, lines)].tolist()
     size = f"{x1 - x0:.4g} × {y1 - y0:.4g}"
     return Found((Ring(corners, polygon, frozenset(members)),), notes=(f"{explained} ({size})",))

@@ -11,8 +11,7 @@ import shapely
 
 from ..errors import PatternError
 from .crease_pattern import Crease, CreasePattern
-from .joining import length_of
-from .rings import JOIN, Ring, curve_line, outer_rings, touching_groups
+from .rings import JOIN, Ring, curve_line, curve_lines, outer_rings, touching_groups
 from .same_line import settle_same_lines
 from .segments import Curve
 from .sheet_finding import Found, Search, find_sheets
@@ -65,8 +64,7 @@ def _patterns(
     conflicts: Sequence[str],
 ) -> tuple[CreasePattern, ...]:
     """One pattern a sheet; what lies beside all of them is told with the first."""
-    curves = [curve_line(stroke.curve) for stroke in strokes]
-    tree = shapely.STRtree(curves)
+    tree = shapely.STRtree(curve_lines([stroke.curve for stroke in strokes]))
     beside = set(range(len(strokes)))
     near: list[list[int]] = []
     for ring in found.sheets:
@@ -145,11 +143,11 @@ class _Sheet:
         """Split the undecided edge strokes that run along the border for a while; what is on it is border."""
         band = sheet.polygon.exterior.buffer(2.0 * self._tolerance)
         shapely.prepare(band)
-        for i in self._open(*EDGE_ROLES, Role.DARK):
+        mine = self._open(*EDGE_ROLES, Role.DARK)
+        lines = curve_lines([self._strokes[i].curve for i in mine])
+        for k in np.flatnonzero(shapely.intersects(band, lines)).tolist():
+            i, whole = mine[k], lines[k]
             stroke = self._strokes[i]
-            whole = curve_line(stroke.curve)
-            if not shapely.intersects(band, whole):
-                continue
             if shapely.intersection(whole, band).length < _ALONG * self._size:
                 continue
             self._settle(i, "border")
@@ -215,11 +213,13 @@ class _Sheet:
         shapely.prepare(grown)
         gaps = shapely.union_all([hole.polygon.buffer(self._tolerance) for hole in holes])
         shapely.prepare(gaps)
-        for i in self._open(*(set(Role) - set(_LEFT_OUT))):
-            curve = curve_line(self._strokes[i].curve)
-            if not shapely.intersects(grown, curve):
+        mine = self._open(*(set(Role) - set(_LEFT_OUT)))
+        lines = curve_lines([self._strokes[i].curve for i in mine])
+        on, fallen = shapely.intersects(grown, lines), shapely.covers(gaps, lines)
+        for i, here, gone in zip(mine, on.tolist(), fallen.tolist(), strict=True):
+            if not here:
                 self._settle(i, _BESIDE)
-            elif holes and shapely.covers(gaps, curve):
+            elif gone:
                 self._settle(i, "left out: inside a hole")
 
     def _settle_rest(self, sheet: Ring, holes: Sequence[Ring]) -> None:
@@ -273,7 +273,7 @@ class _Sheet:
         creases = [
             Crease(s.curve.points, s.curve.closed, letters[i], s.name, s.curve.beziers)
             for i, s in enumerate(self._strokes)
-            if i in letters and length_of(s.curve) > 0.0
+            if i in letters
         ]
         return creases, notes
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from ..errors import PatternError
 from .joining import join_strokes
 from .meaning import classify
-from .segments import MAX_POINTS, Curve, bounds, sample
+from .segments import MAX_POINTS, Curve, bounds, sample_all
 from .sheets import MAX_STROKES
 from .stroke import Lines, Stroke
 from .svg_walk import Drawing, Drawn
@@ -25,36 +25,24 @@ def lines_of(drawing: Drawing) -> Lines:
     size = max(x1 - x0, y1 - y0)
     if not size > 0.0:
         raise PatternError("the drawing has no size: all its lines are one point", notes=drawing.notes)
-    strokes: list[Stroke] = []
-    budget = MAX_POINTS
-    for shape in stroked:
-        decision = classify(shape)
-        identity = shape.identity[:_NAME_LENGTH]
-        for curve, part in _curves(shape, size, budget):
-            budget -= len(curve.points)
-            name = f"{identity} part {part}" if identity and part else identity
-            if len(strokes) == MAX_STROKES:
-                raise PatternError(f"the drawing has more than {MAX_STROKES:,} strokes", notes=drawing.notes)
-            strokes.append(Stroke(curve, decision, name, shape.opacity))
-    filled = [
-        curve.points
-        for shape in drawing.shapes
-        if shape.stroke is None and shape.filled
-        for curve, _ in _curves(shape, size, MAX_POINTS)
-        if curve.closed
-    ]
+    strokes = [Stroke(curve, classify(shape), name, shape.opacity) for shape, curve, name in _curves(stroked, size)]
+    if len(strokes) > MAX_STROKES:
+        raise PatternError(f"the drawing has more than {MAX_STROKES:,} strokes", notes=drawing.notes)
+    fills = [shape for shape in drawing.shapes if shape.stroke is None and shape.filled]
+    filled = tuple(curve.points for _, curve, _ in _curves(fills, size) if curve.closed)
     joined, notes = join_strokes(strokes, size)
-    return Lines(tuple(joined), tuple(filled), drawing.page, drawing.unit_mm, (*notes, *drawing.notes))
+    return Lines(tuple(joined), filled, drawing.page, drawing.unit_mm, (*notes, *drawing.notes))
 
 
-def _curves(shape: Drawn, size: float, budget: int) -> Iterator[tuple[Curve, int]]:
-    """The sampled subpaths of a shape that have a length, and the number of each where there are several."""
-    several = len(shape.subpaths) > 1
-    for part, subpath in enumerate(shape.subpaths, start=1):
-        try:
-            curve = sample(subpath, size, budget)
-        except PatternError as error:
-            raise PatternError(error.message, element=shape.element) from error
-        if curve is not None:
-            budget -= len(curve.points)
-            yield curve, part if several else 0
+def _curves(shapes: Sequence[Drawn], size: float) -> Iterator[tuple[Drawn, Curve, str]]:
+    """The sampled subpaths of shapes that have a length, and the name of each. Raises PatternError."""
+    subpaths = [subpath for shape in shapes for subpath in shape.subpaths]
+    elements = [shape.element for shape in shapes for _ in shape.subpaths]
+    curves = iter(sample_all(subpaths, elements, size, MAX_POINTS))
+    for shape in shapes:
+        identity = shape.identity[:_NAME_LENGTH]
+        several = identity and len(shape.subpaths) > 1
+        for part, _ in enumerate(shape.subpaths, start=1):
+            curve = next(curves)
+            if curve is not None:
+                yield shape, curve, f"{identity} part {part}" if several else identity
