@@ -16,6 +16,7 @@ from .rings import JOIN, Ring, curve_line, outer_rings, share_inside, touching_g
 from .segments import MAX_POINTS, Curve, bounds, sample
 from .stroke import CREASE_ROLES, EDGE_ROLES, Role, Stroke
 from .svg_walk import Drawing, Drawn
+from .unstroked import why_no_line
 
 #: How much of the creases (by length) a closed outline must hold to be the border. Strokes that say they are
 #: an edge need less agreement than black ones, these less than a drawing in which nothing says anything.
@@ -45,7 +46,7 @@ class _Sheet:
         self._drawing = drawing
         stroked = [shape for shape in drawing.shapes if shape.stroke is not None]
         if not stroked:
-            raise PatternError("the drawing has no line: nothing in it is stroked")
+            raise PatternError(why_no_line(drawing.shapes))
         x0, y0, x1, y1 = bounds([subpath for shape in stroked for subpath in shape.subpaths])
         self._size = max(x1 - x0, y1 - y0)
         if not self._size > 0.0:

@@ -8,6 +8,7 @@ The steps: ``svg_xml`` reads safely, ``svg_walk`` finds what is drawn, ``segment
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from typing import IO, Any
 
 import shapely
@@ -20,6 +21,11 @@ from .source import read_source
 from .svg_walk import read_drawing
 from .svg_xml import parse_svg_tree
 
+#: What is said of a drawing whose width and height are missing, in pixels, or in percent.
+NO_SIZE = (
+    "the file gives no physical size: one unit is taken for 1 mm (choose another unit or scale when reading it)"
+)
+
 
 def read_svg(
     source: str | os.PathLike[str] | IO[Any], options: ReadOptions | None = None
@@ -31,7 +37,10 @@ def read_svg(
     """
     data, name = read_source(source)
     try:
-        return (make_pattern(read_drawing(parse_svg_tree(data))),)
+        drawing = read_drawing(parse_svg_tree(data))
+        if drawing.unit_mm is None and (options is None or options.unit is None):
+            drawing = replace(drawing, notes=(*drawing.notes, NO_SIZE))
+        return (make_pattern(drawing),)
     except CurvefoldError as error:
         raise (error if name is None else error.in_file(name)) from error
     except (

@@ -684,7 +684,7 @@ def test_arcs_as_beziers_are_close() -> None:
         ("hello", ReadError, "not well-formed XML"),
         ("<svg", ReadError, "not well-formed XML"),
         ("<html></html>", ReadError, "not SVG"),
-        ('<!DOCTYPE svg [<!ENTITY a "b">]><svg>&a;</svg>', ReadError, "entity"),
+        ('<!DOCTYPE svg [<!ENTITY a SYSTEM "b">]><svg>&a;</svg>', ReadError, "entity"),
         (f"<svg {HEAD}/>", PatternError, "no line"),
         (f"<svg {HEAD}>{SQUARE}</svg>", PatternError, "no crease"),
         (f"<svg {HEAD}>{RED_LINE}{BLUE_LINE}</svg>", PatternError, "no border"),
