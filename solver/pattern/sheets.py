@@ -11,7 +11,7 @@ import shapely
 
 from ..errors import PatternError
 from .crease_pattern import Crease, CreasePattern
-from .meaning import classify
+from .meaning import Evidence, classify_all
 from .rings import JOIN, Ring, curve_line, outer_rings, share_inside, touching_groups
 from .segments import MAX_POINTS, Curve, bounds, sample
 from .stroke import CREASE_ROLES, EDGE_ROLES, Role, Stroke
@@ -54,8 +54,8 @@ class _Sheet:
         self._tolerance = JOIN * self._size
         self._strokes: list[Stroke] = []
         budget = MAX_POINTS
-        for shape in stroked:
-            decision = classify(shape)
+        decisions = classify_all([Evidence(shape.stroke, shape.dashes, shape.words) for shape in stroked])
+        for shape, decision in zip(stroked, decisions, strict=True):
             for curve, part in self._curves(shape, budget):
                 budget -= len(curve.points)
                 identity = shape.identity[:80]
@@ -81,6 +81,8 @@ class _Sheet:
                 yield curve, part if several else 0
 
     def pattern(self) -> CreasePattern:
+        for i in self._open(Role.ASIDE):
+            self._settle(i, f"left out: {self._strokes[i].decision.word}")
         sheet, explained = self._find_sheet()
         for i in sheet.members:
             self._settle(i, "border")

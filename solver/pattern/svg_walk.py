@@ -11,6 +11,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import PatternError, ReadError
+from .meaning import MAX_WORDS
 from .segments import MAX_POINTS, Subpath
 from .svg_bounds import exact_box
 from .svg_css import MAX_PROPERTY, MEASURES, Stylesheet, css_path
@@ -42,25 +43,16 @@ _SILENT = frozenset(
     | {"style", "title", "desc", "metadata", "script", "view", "font"}
     | {"animate", "animateTransform", "animateMotion", "set"}
 )
-#: Attributes in which programs say what a line is, in words.
+#: Attributes in which programs say what a line is. They make a line of a shape that nothing else gives a look.
 DATA_ATTRIBUTES = (
     "data-assignment",
     "data-type",
     "data-layer",
-    "data-name",
     "data-role",
     "data-kind",
     "data-fold",
     "data-linetype",
-    "type",
-    "inkscape:label",
 )
-#: Of these, the ones that make a line of a shape that nothing else gives a look: the others name layers, whatever
-#: is in them.
-_DATA_OF_LINES = frozenset(DATA_ATTRIBUTES) - {"data-name", "type", "inkscape:label"}
-#: Such attributes of one shape with its groups, and characters of their values.
-_MAX_DATA = 20
-_MAX_DATA_LENGTH = 100
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,10 +66,8 @@ class Drawn:
     filled    whether its inside is painted
     opacity   of the stroke, all factors multiplied
     dashes    dash lengths, empty for a solid line
-    classes   class names, its own first, then those of its groups from the inside out
-    names     ids and layer names, its own first, then those of its groups from the inside out
-    data      (name, value) of the attributes DATA_ATTRIBUTES, its own first, then those of its groups from the
-              inside out
+    words     (kind, text) of all that says in words what it is, for ``meaning.Evidence``: its own first, then those
+              of its groups from the inside out; of each element data, then classes, then id and labels
     """
 
     element: str
@@ -87,9 +77,7 @@ class Drawn:
     filled: bool
     opacity: float
     dashes: tuple[float, ...]
-    classes: tuple[str, ...]
-    names: tuple[str, ...]
-    data: tuple[tuple[str, str], ...] = ()
+    words: tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,9 +114,7 @@ class _State:
     opacity: float
     width: float  # of the nearest viewport, for percentages
     height: float
-    classes: tuple[str, ...] = ()
-    names: tuple[str, ...] = ()
-    data: tuple[tuple[str, str], ...] = ()
+    words: tuple[tuple[str, str], ...] = ()
     depth: int = 0
     used: tuple[Node, ...] = field(default=())
 
@@ -354,18 +340,13 @@ class _Walk:
                 return None
             if any(look.own.get(name, "none").lower() != "none" for name in ("clip-path", "mask")):
                 self._left_out[f"<{node.tag}> read whole: clipping is not applied"] += 1
-        own = node.attributes if named else {}
-        names = [own[name] for name in ("id", "inkscape:label", "data-name") if own.get(name)]
-        data = tuple((name, own[name][:_MAX_DATA_LENGTH]) for name in DATA_ATTRIBUTES if name in own)
         return _State(
             state.matrix,
             look,
             state.opacity * look.opacity,
             state.width,
             state.height,
-            (*node.classes, *state.classes) if named else (),
-            (*names, *state.names) if names else state.names,
-            (*data, *state.data)[:_MAX_DATA] if data else state.data,
+            (*_words(node), *state.words)[:MAX_WORDS] if named else (),
             state.depth + 1,
             state.used,
         )
@@ -457,7 +438,7 @@ class _Walk:
             self._left_out[f"<{node.tag}> left out: hidden"] += 1
             return
         stroke, fill = look.stroke, look.fill
-        if not look.declared and any(name in _DATA_OF_LINES for name, _ in state.data):
+        if not look.declared and any(kind in DATA_ATTRIBUTES for kind, _ in state.words):
             # Nothing says how it looks, but what it is.
             stroke, fill = UNKNOWN_COLOUR, None
             self._left_out[
@@ -512,9 +493,7 @@ class _Walk:
                 filled,
                 opacity,
                 look.dashes,
-                state.classes,
-                state.names,
-                state.data,
+                state.words,
             )
         )
 
@@ -530,6 +509,18 @@ class _Viewport:
     pixels_per_unit: float | None
     stretch: float = 1.0  # of y against x, when preserveAspectRatio is none
     page: tuple[float, float, float, float] | None = None
+
+
+def _words(node: Node) -> tuple[tuple[str, str], ...]:
+    """(kind, text) of what one element is called: data, classes, then names."""
+    own = node.attributes
+    shape = node.tag in SHAPES
+    data = [(name, own[name]) for name in (*DATA_ATTRIBUTES, "type") if own.get(name)]
+    classes = [("class" if shape else "class of its group", name) for name in node.classes]
+    group = "group or layer name"
+    labels = [("name" if shape else group, own.get(name, "")) for name in ("inkscape:label", "data-name")]
+    names = [("id" if shape else group, own.get("id", "")), *labels]
+    return (*data, *classes, *((kind, text) for kind, text in names if text))
 
 
 def _left_out(tag: str) -> str:
