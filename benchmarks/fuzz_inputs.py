@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 from collections.abc import Callable
 from functools import cache
@@ -30,6 +31,9 @@ _NUMBERS.append("9" * 400)
 _COLOURS = [
     "red", "#f00", "#00f", "black", "none", "url(#g)", "rgb(1,2,3)", "rgb(", "currentColor", "inherit",
     "hsl(1e999,0%,0%)", "#", "#ff", "var(--x)",
+    "var(--x, var(--y, red))", "color(display-p3 1 0 0)", "color(", "oklch(1e308 1e308 1turn)",
+    "lab(none none 1e999)", "device-cmyk(0 1 1 0)", "#f00 icc-color(a, 1)", "hwb(1e308rad 0% 0%)",
+    "red !important", "\\",
 ]  # fmt: skip
 _COLOURS.append("")
 _TRANSFORMS = [
@@ -105,7 +109,19 @@ def _element(rng: Random, depth: int) -> str:
     inside = "".join(_element(rng, depth + 1) for _ in range(rng.randrange(4))) if depth < 4 else ""
     if tag == "style":
         inside = rng.choice(
-            [".a{stroke:red}", "path{stroke", "*{fill:none}", "@import url(x);", "a b c d e{x:y}" * 20]
+            [
+                ".a{stroke:red}",
+                "path{stroke",
+                "*{fill:none}",
+                "@import url(x);",
+                "a b c d e{x:y}" * 20,
+                ":root{--x:var(--x)}",
+                "g:nth-child(2n+1) ~ [id^='a' i]:not(.a){stroke:blue!important}",
+                "@media print{",
+                "*{transform:rotate(1e308deg);transform-box:fill-box;transform-origin:50% 1e308px}",
+                "a{b:'",
+                "@{};:",
+            ]
         )
     return f"<{tag} {attributes}>{inside}</{tag}>"
 
@@ -353,6 +369,11 @@ def not_sides(net: solver.PiecewiseDog) -> list[tuple[int, int]]:
     return [(a, b) for a, b in marked if (a, b) not in sides and (b, a) not in sides]
 
 
+def _svgz(rng: Random) -> bytes:
+    data = gzip.compress(_svg(rng), mtime=0)
+    return spoilt(rng, data) if rng.random() < 0.3 else data
+
+
 def _read_handles(data: bytes, folder: Path) -> None:
     path = folder / "handles.json"
     path.write_bytes(data)
@@ -385,7 +406,7 @@ def _door(name: str, make: Callable[[Random], bytes], use: Callable[[bytes, Path
 
 
 #: Input for every reader of drawings.
-MAKERS = {".svg": _svg, ".fold": made_fold}
+MAKERS = {".svg": _svg, ".svgz": _svgz, ".fold": made_fold}
 DOORS = {
     **{suffix[1:]: _door("drawing", MAKERS[suffix], _read_drawing(suffix)) for suffix in READERS},
     "handles": _door("handles", made_handles, _read_handles),

@@ -23,7 +23,7 @@ from ..solver.files.ruling_files import RULING_FILES
 from .bridge import contact_sheet
 from .whole_files import whole_file, write_text
 
-DRAWING_SUFFIXES = (".svg", ".fold")
+DRAWING_SUFFIXES = (".svg", ".svgz", ".fold")
 
 REPORT = "report.json"
 RESULTS = ("folded.obj", "folded.fold", REPORT)

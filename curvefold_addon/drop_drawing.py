@@ -11,7 +11,7 @@ class CURVEFOLD_FH_drawing(bpy.types.FileHandler):  # noqa: N801  (Blender wants
     bl_idname = "CURVEFOLD_FH_drawing"
     bl_label = "Crease Pattern"
     bl_import_operator = ImportDrawing.bl_idname
-    bl_file_extensions = ".svg;.fold"
+    bl_file_extensions = ".svg;.svgz;.fold"
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:

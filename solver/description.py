@@ -192,7 +192,8 @@ def _read_json(path: str | Path, error: type[HandleError] | type[DescriptionErro
     try:
         if path.stat().st_size > _MAX_BYTES:
             raise error("the file is too large", file=str(path))
-        return json.loads(path.read_text(encoding="utf-8"))
+        # Bytes: JSON shows by itself whether it is UTF-8, UTF-16 or UTF-32, with a byte order mark or without.
+        return json.loads(path.read_bytes())
     except OSError as trouble:
         raise error(f"cannot be read: {trouble.strerror or trouble}", file=str(path)) from None
     except (ValueError, RecursionError):

@@ -20,7 +20,7 @@ class FoldDrawing(bpy.types.Operator):
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
     filepath: StringProperty(subtype="FILE_PATH", options={"SKIP_SAVE"})
-    filter_glob: StringProperty(default="*.svg;*.fold", options={"HIDDEN"})
+    filter_glob: StringProperty(default="*.svg;*.svgz;*.fold", options={"HIDDEN"})
     resolution: IntProperty(
         name="Resolution",
         description="Quads along the longer side of the sheet",

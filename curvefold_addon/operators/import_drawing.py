@@ -19,7 +19,7 @@ class ImportDrawing(bpy.types.Operator):
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
     filepath: StringProperty(subtype="FILE_PATH", options={"SKIP_SAVE"})
-    filter_glob: StringProperty(default="*.svg;*.fold", options={"HIDDEN"})
+    filter_glob: StringProperty(default="*.svg;*.svgz;*.fold", options={"HIDDEN"})
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -118,7 +118,7 @@ def parse_fold(data: bytes | str) -> FoldFile:
     if values > MAX_VALUES:
         raise ReadError(f"it has about {values:,} values, and more than {MAX_VALUES:,} are not read")
     try:
-        top = json.loads(data)
+        top = json.loads(data.removeprefix("\ufeff") if isinstance(data, str) else data)
     except json.JSONDecodeError as error:
         raise ReadError(f"this is not JSON ({error.msg} in line {error.lineno})") from error
     except RecursionError:

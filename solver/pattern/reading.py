@@ -14,6 +14,7 @@ from .svg import read_svg
 #: Suffix -> reader of all sheets of a file. A new format is one line here.
 READERS: dict[str, Callable[[str | Path, ReadOptions], tuple[CreasePattern, ...]]] = {
     ".svg": read_svg,
+    ".svgz": read_svg,
     ".fold": read_fold,
 }
 
@@ -25,7 +26,9 @@ def read_patterns(path: str | Path, options: ReadOptions | None = None) -> tuple
     the notes that were made so far.
     """
     path, options = Path(path), options or ReadOptions()
-    reader = READERS.get(path.suffix.lower())
+    # Readers inflate what is compressed, whatever it is called: x.svg.gz is x.svg.
+    base = path.with_suffix("") if path.suffix.lower() == ".gz" else path
+    reader = READERS.get(base.suffix.lower())
     if reader is None:
         raise ReadError(
             f"drawings of this kind ({path.suffix or 'no suffix'}) are not read, only {', '.join(READERS)}",
@@ -38,7 +41,7 @@ def read_patterns(path: str | Path, options: ReadOptions | None = None) -> tuple
             raise PatternError(f"it has {held}, and sheet {options.sheet} is asked for")
     except CurvefoldError as error:
         raise error.in_file(str(path)) from error
-    stem = _readable(path.stem)
+    stem = _readable(base.stem)
     several = len(patterns) > 1
     named = [
         pattern.named(f"{stem} {number}" if several else stem, options.unit_mm(pattern.unit_mm))

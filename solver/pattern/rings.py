@@ -174,8 +174,9 @@ def _reached(
         near = [j for j in tree.query(point, predicate="dwithin", distance=reach) if indices[j] != open_[k // 2]]
         if not near:
             continue
-        line = lines[min(near, key=lambda j: lines[j].distance(point))]
-        target = shapely.get_coordinates(line.interpolate(line.project(point)))[0]
+        line = lines[near[int(np.argmin(shapely.distance(lines[near], point)))]]
+        along = shapely.line_locate_point(line, point)
+        target = shapely.get_coordinates(shapely.line_interpolate_point(line, along))[0]
         width = float(np.hypot(*(target - ends[k])))
         if width > tolerance:
             gaps.append(Gap(0.5 * (target + ends[k]), width))

@@ -164,13 +164,12 @@ def _assembled(parts: Sequence[tuple[Segment, int, FloatArray]], closed: bool, s
     """A curve of sampled segments, each with how many samples it has."""
     if not parts:
         return None
-    beziers: list[FloatArray] | None = []
+    beziers: list[FloatArray] = []
+    exact = True
     for segment, count, _ in parts:
         cubics = _as_cubics(segment, count == _STRAIGHT_SAMPLES, ARC_AS_CUBICS * size)
-        if cubics is None:
-            beziers = None
-            break
-        beziers.extend(cubics)
+        exact &= cubics is not None
+        beziers.extend(cubics or ())
     if len(parts) == 1 and parts[0][1] == _STRAIGHT_SAMPLES:
         return Curve(parts[0][2], False, np.array(beziers))
     points = np.vstack([parts[0][2], *(row[1:] for _, _, row in parts[1:])])
@@ -181,7 +180,7 @@ def _assembled(parts: Sequence[tuple[Segment, int, FloatArray]], closed: bool, s
         points = points[:-1]
     if len(points) < 2:
         return None
-    return Curve(points, closed, np.array(beziers) if beziers else None)
+    return Curve(points, closed, np.array(beziers) if exact else None)
 
 
 def _sample_counts(segments: Sequence[Segment], size: float) -> IntArray:

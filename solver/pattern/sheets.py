@@ -26,8 +26,8 @@ MAX_STROKES = 50_000
 MAX_HOLES = 1_000
 
 _LETTERS = {Role.MOUNTAIN: "M", Role.VALLEY: "V"}
-#: What becomes of strokes that say they are nothing to fold, and of what lies off the sheet.
-_LEFT_OUT = {Role.ASIDE: "left out: no part of the sheet", Role.FACET: "left out: facet line"}
+#: Strokes that say they are nothing to fold, and what becomes of what lies off the sheet.
+_NO_PART = frozenset({Role.ASIDE, Role.FACET})
 _BESIDE = "left out: beside the sheet"
 _NO_CREASE = "no crease is drawn on the sheet: it is blank paper, which handles can bend"
 
@@ -84,9 +84,13 @@ def _patterns(
 
 
 def _fated(stroke: Stroke, frame: bool) -> Stroke:
-    if stroke.decision.role in (Role.ASIDE, Role.FACET):
-        return replace(stroke, fate=_LEFT_OUT[stroke.decision.role])
+    if stroke.decision.role in _NO_PART:
+        return replace(stroke, fate=_left_out(stroke))
     return replace(stroke, fate="left out: a frame around the sheet" if frame else _BESIDE)
+
+
+def _left_out(stroke: Stroke) -> str:
+    return "left out: " + ("facet line" if stroke.decision.role is Role.FACET else stroke.decision.word)
 
 
 class _Sheet:
@@ -213,7 +217,7 @@ class _Sheet:
         shapely.prepare(grown)
         gaps = shapely.union_all([hole.polygon.buffer(self._tolerance) for hole in holes])
         shapely.prepare(gaps)
-        mine = self._open(*(set(Role) - set(_LEFT_OUT)))
+        mine = self._open(*(set(Role) - _NO_PART))
         lines = curve_lines([self._strokes[i].curve for i in mine])
         on, fallen = shapely.intersects(grown, lines), shapely.covers(gaps, lines)
         for i, here, gone in zip(mine, on.tolist(), fallen.tolist(), strict=True):
@@ -223,9 +227,8 @@ class _Sheet:
                 self._settle(i, "left out: inside a hole")
 
     def _settle_rest(self, sheet: Ring, holes: Sequence[Ring]) -> None:
-        for role, fate in _LEFT_OUT.items():
-            for i in self._open(role):
-                self._settle(i, fate)
+        for i in self._open(*_NO_PART):
+            self._settle(i, _left_out(self._strokes[i]))
         for i in self._open(Role.CUT, Role.HOLE):
             self._settle(i, "left out: a cut that does not close is not supported")
         for i in self._open(Role.BORDER):

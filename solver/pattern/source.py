@@ -8,13 +8,17 @@ from pathlib import Path
 from typing import IO, Any
 
 from ..errors import ReadError
+from .text import inflate
 
 #: A drawing of this size is not a crease pattern; parsing it would take minutes and gigabytes.
 MAX_BYTES = 64 * 1024 * 1024
 
 
 def read_source(source: str | os.PathLike[str] | IO[Any]) -> tuple[bytes | str, str | None]:
-    """The text of a path or an open file, and the file's name if known. Raises ReadError."""
+    """What is in a path or an open file, inflated if it is compressed (gzip), and the file's name if known.
+
+    Raises ReadError.
+    """
     if isinstance(source, (str, os.PathLike)):
         path = Path(source)
         try:
@@ -38,6 +42,11 @@ def read_source(source: str | os.PathLike[str] | IO[Any]) -> tuple[bytes | str, 
             raise ReadError(f"the file cannot be read ({error})", file=name) from error
     if len(data) > MAX_BYTES:
         raise _too_large(len(data), name)
+    if isinstance(data, bytes):
+        try:
+            data = inflate(data, MAX_BYTES)
+        except ReadError as error:
+            raise error if name is None else error.in_file(name) from error
     return data, name
 
 

@@ -32,11 +32,17 @@ EDGE_ROLES = frozenset({Role.BORDER, Role.HOLE, Role.CUT})
 
 @dataclass(frozen=True)
 class Decision:
-    """The role of one stroke and the evidence: ``why`` is "hue", "class", "group or layer name", ..."""
+    """The role of one stroke and the evidence.
+
+    why     "hue", "dash pattern", "class", "group or layer name", ...
+    detail  what the stroke looks like and is called, for notes: "of colour #ff0000 named 'cut'"
+    word    what a line that is no part of the sheet is: "dimension line"
+    """
 
     role: Role
     why: str
     detail: str
+    word: str = ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ asks ``meaning`` what each stroke means alone, and ``sheets`` says what all mean
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from typing import IO, Any
 
 import shapely
@@ -21,6 +22,11 @@ from .svg_strokes import lines_of
 from .svg_walk import read_drawing
 from .svg_xml import parse_svg_tree
 
+#: What is said of a drawing whose width and height are missing, in pixels, or in percent.
+NO_SIZE = (
+    "the file gives no physical size: one unit is taken for 1 mm (choose another unit or scale when reading it)"
+)
+
 
 def read_svg(
     source: str | os.PathLike[str] | IO[Any], options: ReadOptions | None = None
@@ -32,8 +38,11 @@ def read_svg(
     """
     data, name = read_source(source)
     try:
-        lines = lines_of(read_drawing(parse_svg_tree(data)))
-        return make_patterns(lines, (options or ReadOptions()).border)
+        drawing = read_drawing(parse_svg_tree(data))
+        options = options or ReadOptions()
+        if drawing.unit_mm is None and options.unit is None:
+            drawing = replace(drawing, notes=(*drawing.notes, NO_SIZE))
+        return make_patterns(lines_of(drawing), options.border)
     except CurvefoldError as error:
         raise (error if name is None else error.in_file(name)) from error
     except (

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Sequence
 
 from ..errors import PatternError
 from .joining import join_strokes
-from .meaning import classify
+from .meaning import Evidence, classify_all
 from .segments import MAX_POINTS, Curve, bounds, sample_all
 from .sheets import MAX_STROKES
 from .stroke import Lines, Stroke
 from .svg_walk import Drawing, Drawn
+from .unstroked import why_no_line
 
 #: Characters of a shape's id that names repeat.
 _NAME_LENGTH = 80
@@ -20,18 +21,25 @@ def lines_of(drawing: Drawing) -> Lines:
     """The strokes of a drawing, sampled and classified. Raises PatternError: nothing stroked, too many points."""
     stroked = [shape for shape in drawing.shapes if shape.stroke is not None]
     if not stroked:
-        raise PatternError("the drawing has no line: nothing in it is stroked", notes=drawing.notes)
+        raise PatternError(why_no_line(drawing.shapes), notes=drawing.notes)
     x0, y0, x1, y1 = bounds([subpath for shape in stroked for subpath in shape.subpaths])
     size = max(x1 - x0, y1 - y0)
     if not size > 0.0:
         raise PatternError("the drawing has no size: all its lines are one point", notes=drawing.notes)
-    strokes = [Stroke(curve, classify(shape), name, shape.opacity) for shape, curve, name in _curves(stroked, size)]
+    decisions = dict(zip(stroked, classify_all([_evidence(shape) for shape in stroked]), strict=True))
+    strokes = [
+        Stroke(curve, decisions[shape], name, shape.opacity) for shape, curve, name in _curves(stroked, size)
+    ]
     if len(strokes) > MAX_STROKES:
         raise PatternError(f"the drawing has more than {MAX_STROKES:,} strokes", notes=drawing.notes)
     fills = [shape for shape in drawing.shapes if shape.stroke is None and shape.filled]
     filled = tuple(curve.points for _, curve, _ in _curves(fills, size) if curve.closed)
     joined, notes = join_strokes(strokes, size)
     return Lines(tuple(joined), filled, drawing.page, drawing.unit_mm, (*notes, *drawing.notes))
+
+
+def _evidence(shape: Drawn) -> Evidence:
+    return Evidence(shape.stroke, shape.dashes, shape.words)
 
 
 def _curves(shapes: Sequence[Drawn], size: float) -> Iterator[tuple[Drawn, Curve, str]]:

@@ -1,8 +1,4 @@
-"""Numbers, lengths, colours and transforms as SVG writes them.
-
-svgelements knows the colour names and the transform functions. It reads what it does not know as black or as
-nothing, so everything is checked here before it is asked.
-"""
+"""Numbers, lengths and angles as SVG and CSS write them, and what a colour is."""
 
 from __future__ import annotations
 
@@ -10,11 +6,6 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-
-import numpy as np
-import svgelements
-
-from ..arrays import FloatArray
 
 #: CSS pixels in one unit (CSS Values 3, section 6.2): an inch is 96 px, whatever the screen.
 PIXELS = {
@@ -37,11 +28,6 @@ MAX_NUMBER = 400
 _NUMBER = re.compile(NUMBER)
 _LENGTH = re.compile(rf"\s*({NUMBER})\s*([A-Za-z]*|%)\s*\Z")
 _SEPARATOR = re.compile(r"[\s,]*")
-_FUNCTION = re.compile(r"[\s,]*([A-Za-z]+)\s*\(([^()]*)\)")
-_ARGUMENT = re.compile(rf"({NUMBER})([A-Za-z]*)[\s,]*")
-_HEX = re.compile(r"#([0-9a-fA-F]{3}|[0-9a-fA-F]{4}|[0-9a-fA-F]{6}|[0-9a-fA-F]{8})\Z")
-_COLOUR_FUNCTION = re.compile(r"(rgb|rgba|hsl|hsla)\(([^()]*)\)\Z")
-_COLOUR_ARGUMENT = re.compile(rf"({NUMBER})(%|deg)?")
 
 
 class SvgValueError(ValueError):
@@ -150,136 +136,11 @@ class Colour:
 #: A paint that is there but has no colour of its own to read: gradients, patterns, unknown words.
 UNKNOWN_COLOUR = Colour(0.0, 0.0, 0.0)
 
-
-def parse_paint(text: str, current: str) -> Colour | None:
-    """The colour of a stroke or fill, None for ``none``.
-
-    ``current`` is what ``currentColor`` stands for. A paint server (``url(#gradient) red``) counts as its
-    fallback, black without one. Raises SvgValueError on a colour nobody knows.
-    """
-    word = text.strip().lower()
-    if word.startswith("url("):
-        fallback = word.partition(")")[2].strip()
-        known = fallback and not fallback.startswith("url(")
-        return parse_paint(fallback, current) if known else UNKNOWN_COLOUR
-    if word in ("context-stroke", "context-fill"):
-        return UNKNOWN_COLOUR
-    if word == "currentcolor":
-        return UNKNOWN_COLOUR if current.strip().lower() == "currentcolor" else parse_paint(current, "black")
-    if word in ("none", "transparent", ""):
-        return None
-    if match := _HEX.match(word):
-        digits = match.group(1)
-        if len(digits) <= 4:
-            digits = "".join(2 * digit for digit in digits)
-        values = [int(digits[k : k + 2], 16) / 255.0 for k in range(0, len(digits), 2)]
-        return Colour(*values[:3], *values[3:4])
-    if match := _COLOUR_FUNCTION.match(word):
-        return _colour_function(match.group(1)[:3], match.group(2), text)
-    # svgelements answers opaque black to unknown words, so black itself is asked for by name.
-    named = svgelements.Color(word if word.isalpha() and len(word) < 40 else "black")
-    if named.value is None or (named == "black" and word != "black"):
-        raise SvgValueError(f"the colour {text.strip()[:40]!r} is not known")
-    return Colour(named.red / 255.0, named.green / 255.0, named.blue / 255.0)
-
-
-def _colour_function(kind: str, arguments: str, text: str) -> Colour:
-    parts = _COLOUR_ARGUMENT.findall(arguments)
-    if len(parts) not in (3, 4):
-        raise SvgValueError(f"the colour {text.strip()[:40]!r} is not known")
-    numbers = [finite(number) / (100.0 if unit == "%" else 1.0) for number, unit in parts]
-    opacity = _unit(numbers[3]) if len(numbers) == 4 else 1.0
-    if kind == "rgb":
-        red, green, blue = (
-            _unit(value if unit == "%" else value / 255.0)
-            for value, (_, unit) in zip(numbers[:3], parts[:3], strict=True)
-        )
-        return Colour(red, green, blue, opacity)
-    hue, saturation, lightness = numbers[0] / 360.0, _unit(numbers[1]), _unit(numbers[2])
-    # CSS Color 3, section 4.2.4.
-    high = lightness * (1 + saturation) if lightness <= 0.5 else lightness + saturation * (1 - lightness)
-    low = 2 * lightness - high
-    red, green, blue = (_hsl_channel(low, high, hue + shift) for shift in (1 / 3, 0.0, -1 / 3))
-    return Colour(red, green, blue, opacity)
-
-
-def _hsl_channel(low: float, high: float, hue: float) -> float:
-    hue %= 1.0
-    if hue < 1 / 6:
-        return low + (high - low) * 6 * hue
-    if hue < 1 / 2:
-        return high
-    if hue < 2 / 3:
-        return low + (high - low) * (2 / 3 - hue) * 6
-    return low
-
-
-def _unit(value: float) -> float:
-    return min(max(value, 0.0), 1.0)
-
-
-#: Function -> the numbers of arguments it may have (SVG 1.1, section 7.6).
-_TRANSFORMS = {
-    "matrix": (6,),
-    "translate": (1, 2),
-    "translatex": (1,),
-    "translatey": (1,),
-    "scale": (1, 2),
-    "scalex": (1,),
-    "scaley": (1,),
-    "rotate": (1, 3),
-    "skewx": (1,),
-    "skewy": (1,),
-}
-_ANGLES: dict[str, Callable[[float], float]] = {
+#: Unit -> the angle in radians; a number alone is in degrees.
+ANGLES: dict[str, Callable[[float], float]] = {
     "deg": math.radians,
     "": math.radians,
     "rad": float,
     "grad": lambda value: value * math.pi / 200.0,
     "turn": lambda value: value * math.tau,
 }
-#: Transform functions in one attribute; real ones have a handful.
-MAX_TRANSFORMS = 100
-
-
-def parse_transform(text: str) -> FloatArray:
-    """(3,3) matrix of a transform list. Raises SvgValueError."""
-    result = np.eye(3)
-    if text.strip().lower() in ("", "none"):
-        return result
-    position = count = 0
-    text = text.strip()
-    while position < len(text):
-        match = _FUNCTION.match(text, position)
-        count += 1
-        if match is None or count > MAX_TRANSFORMS:
-            raise SvgValueError(f"{text[position : position + 30]!r} is not a transform")
-        with np.errstate(over="ignore", invalid="ignore"):
-            result = result @ _transform(match.group(1), match.group(2))
-        position = match.end()
-    if not np.isfinite(result).all():
-        raise SvgValueError("the transform is not finite")
-    return result
-
-
-def _transform(name: str, arguments: str) -> FloatArray:
-    kind = name.lower()
-    parts: list[tuple[str, str]] = []
-    position = _end(_SEPARATOR, arguments, 0)
-    while match := _ARGUMENT.match(arguments, position):
-        parts.append((match.group(1), match.group(2)))
-        position = match.end()
-    if position < len(arguments) or len(parts) not in _TRANSFORMS.get(kind, ()):
-        raise SvgValueError(f"{name}({arguments[:30]}) is not a transform")
-    if kind in ("rotate", "skewx", "skewy"):
-        unit = parts[0][1].lower()
-        if unit not in _ANGLES:
-            raise SvgValueError(f"the unit {parts[0][1]!r} is not an angle")
-        # Radians into svgelements: a bare number is degrees there, and so are these after the division.
-        angle = math.degrees(_ANGLES[unit](finite(parts[0][0])))
-        values = [angle] + [parse_length(number + unit).pixels for number, unit in parts[1:]]
-    else:
-        values = [parse_length(number + unit).pixels for number, unit in parts]
-    call = f"{kind}({','.join(repr(value) for value in values)})"
-    matrix = svgelements.Matrix(call)
-    return np.array([[matrix.a, matrix.c, matrix.e], [matrix.b, matrix.d, matrix.f], [0.0, 0.0, 1.0]])

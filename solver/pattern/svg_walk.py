@@ -4,30 +4,33 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import PatternError, ReadError
+from .meaning import MAX_WORDS
 from .segments import MAX_POINTS, Subpath
-from .svg_css import INHERITED, Stylesheet
+from .svg_bounds import exact_box
+from .svg_css import MAX_PROPERTY, MEASURES, Stylesheet, css_path
 from .svg_shapes import SHAPES, shape_subpaths
-from .svg_values import (
-    MM_PER_PIXEL,
-    UNKNOWN_COLOUR,
-    Colour,
-    Length,
-    SvgValueError,
-    parse_length,
-    parse_numbers,
-    parse_paint,
+from .svg_style import Computed, Styler
+from .svg_transforms import (
+    about,
+    css_origin,
+    css_rotate,
+    css_scale,
+    css_transform,
+    css_translate,
     parse_transform,
 )
+from .svg_values import MM_PER_PIXEL, UNKNOWN_COLOUR, Colour, Length, SvgValueError, parse_length, parse_numbers
 from .svg_xml import MAX_DEPTH, Node
 
 #: Elements drawn, those repeated by <use> counted each time.
-MAX_ELEMENTS = 20_000
+MAX_ELEMENTS = 50_000
 #: Larger numbers cannot be squared and subtracted without losing the drawing.
 MAX_COORDINATE = 1e12
 #: What a browser assumes of an image without any size (CSS 2.1, section 10.3.2).
@@ -40,25 +43,16 @@ _SILENT = frozenset(
     | {"style", "title", "desc", "metadata", "script", "view", "font"}
     | {"animate", "animateTransform", "animateMotion", "set"}
 )
-#: Attributes in which programs say what a line is, in words.
+#: Attributes in which programs say what a line is. They make a line of a shape that nothing else gives a look.
 DATA_ATTRIBUTES = (
     "data-assignment",
     "data-type",
     "data-layer",
-    "data-name",
     "data-role",
     "data-kind",
     "data-fold",
     "data-linetype",
-    "type",
-    "inkscape:label",
 )
-#: Of these, the ones that make a line of a shape that nothing else gives a look: the others name layers, whatever
-#: is in them.
-_DATA_OF_LINES = frozenset(DATA_ATTRIBUTES) - {"data-name", "type", "inkscape:label"}
-#: Such attributes of one shape with its groups, and characters of their values.
-_MAX_DATA = 20
-_MAX_DATA_LENGTH = 100
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,10 +66,8 @@ class Drawn:
     filled    whether its inside is painted
     opacity   of the stroke, all factors multiplied
     dashes    dash lengths, empty for a solid line
-    classes   class names, its own first, then those of its groups from the inside out
-    names     ids and layer names, its own first, then those of its groups from the inside out
-    data      (name, value) of the attributes DATA_ATTRIBUTES, its own first, then those of its groups from the
-              inside out
+    words     (kind, text) of all that says in words what it is, for ``meaning.Evidence``: its own first, then those
+              of its groups from the inside out; of each element data, then classes, then id and labels
     """
 
     element: str
@@ -85,9 +77,7 @@ class Drawn:
     filled: bool
     opacity: float
     dashes: tuple[float, ...]
-    classes: tuple[str, ...]
-    names: tuple[str, ...]
-    data: tuple[tuple[str, str], ...] = ()
+    words: tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,21 +99,28 @@ class Drawing:
     text: int = 0
 
 
+#: Of coordinates that nothing has moved: told by what it is, so that nothing is computed for it.
+_IDENTITY: FloatArray = np.eye(3)
+#: Properties that move an element.
+_MOVING = frozenset({"transform", "translate", "rotate", "scale"})
+
+
 @dataclass(frozen=True, eq=False)
 class _State:
     """What an element hands down to its children."""
 
     matrix: FloatArray
-    properties: dict[str, str]
+    look: Computed
     opacity: float
     width: float  # of the nearest viewport, for percentages
     height: float
-    classes: tuple[str, ...] = ()
-    names: tuple[str, ...] = ()
-    data: tuple[tuple[str, str], ...] = ()
-    painted: bool = False  # whether a stroke or a fill is declared, here or around
+    words: tuple[tuple[str, str], ...] = ()
     depth: int = 0
     used: tuple[Node, ...] = field(default=())
+
+    def moved(self, matrix: FloatArray) -> _State:
+        """Inside of a transform. Raises SvgValueError when it is not finite."""
+        return replace(self, matrix=_joined(self.matrix, matrix))
 
 
 def read_drawing(root: Node) -> Drawing:
@@ -137,6 +134,7 @@ class _Walk:
     def __init__(self, root: Node) -> None:
         self._root = root
         self._sheet = Stylesheet(root)
+        self._styler = Styler()
         self._by_id: dict[str, Node] = {}
         for node in root.walk():
             if node.tag:
@@ -148,15 +146,17 @@ class _Walk:
         self._notes: list[str] = []
         self._elements = 0
         self._segments = 0
+        self._hairlines = 0
+        self._filled_hairlines = 0
         self._paper_units = False  # whether any length was given in units of paper
 
     def drawing(self) -> Drawing:
         root = self._root
-        viewport = self._viewport()
-        matrix = np.diag([1.0, viewport.stretch, 1.0])
-        state = _State(matrix, dict(INHERITED), 1.0, viewport.width, viewport.height)
-        style = self._sheet.style(root)
-        self._children(root, self._enter(root, style, state, named=False))
+        look = self._look(root, self._styler.initial)
+        viewport = self._viewport(_measured(root, look))
+        matrix = _IDENTITY if viewport.stretch == 1.0 else np.diag([1.0, viewport.stretch, 1.0])
+        state = _State(matrix, self._styler.initial, 1.0, viewport.width, viewport.height)
+        self._element_inside(root, state, self._children, named=False)
         unit = viewport.unit_mm
         if unit is None and self._paper_units and viewport.pixels_per_unit is not None:
             # The shapes themselves are measured in paper units, which fixes what a pixel is.
@@ -173,16 +173,19 @@ class _Walk:
             self._notes.append(
                 f"the drawing is shown stretched by {viewport.stretch:.6g} in y, and is read as it is shown"
             )
+        self._notes += [_hairlines(self._hairlines, filled=False)] if self._hairlines else []
+        self._notes += [_hairlines(self._filled_hairlines, filled=True)] if self._filled_hairlines else []
         self._notes += [f"{count} {what}" for what, count in self._left_out.items()]
         if self._sheet.skipped:
-            self._notes.append(f"style rules that are not understood: {', '.join(self._sheet.skipped[:5])}")
+            self._notes.append(f"style rules that are left out: {', '.join(self._sheet.skipped[:5])}")
+        if ignored := list(self._sheet.ignored)[:5]:
+            self._notes.append(f"declarations that are not understood, and passed over: {'; '.join(ignored)}")
         return Drawing(tuple(shapes), unit, tuple(self._notes), viewport.page, self._left_out[_left_out("text")])
 
     # ---- viewports
 
-    def _viewport(self) -> _Viewport:
-        attributes = self._root.attributes
-        width, height = (self._root_length(name) for name in ("width", "height"))
+    def _viewport(self, attributes: Mapping[str, str]) -> _Viewport:
+        width, height = (self._root_length(name, attributes) for name in ("width", "height"))
         box = self._view_box(self._root)
         sizes = [length for length in (width, height) if length is not None]
         if box is None:
@@ -221,9 +224,9 @@ class _Walk:
             (x, stretch * y, x + box_width, stretch * (y + box_height)),
         )
 
-    def _root_length(self, name: str) -> Length | None:
+    def _root_length(self, name: str, attributes: Mapping[str, str]) -> Length | None:
         """The root's width or height; None when missing or relative. Raises ReadError when not positive."""
-        text = self._root.attributes.get(name, "auto").strip()
+        text = attributes.get(name, "auto").strip()
         if text in ("", "auto"):
             return None
         try:
@@ -284,56 +287,96 @@ class _Walk:
         if tag not in _CONTAINERS and tag not in SHAPES and tag != "use":
             self._left_out[_left_out(tag)] += 1
             return
+        self._element_inside(node, state, self._draw)
+
+    def _draw(self, node: Node, state: _State) -> None:
+        """What ``node`` draws, from the state inside it."""
+        if node.tag in SHAPES:
+            self._shape(node, state)
+        elif node.tag == "use":
+            self._use(node, state)
+        elif node.tag == "svg":
+            self._children(node, self._inner_viewport(node, state, _measured(node, state.look)))
+        else:
+            self._children(node, state)
+
+    def _element_inside(
+        self, node: Node, state: _State, draw: Callable[[Node, _State], None], named: bool = True
+    ) -> None:
+        """Lets ``draw`` draw inside ``node``, under its style and transforms, unless it is not displayed."""
         try:
-            inner = self._enter(node, self._sheet.style(node), state)
+            inner = self._enter(node, state, named)
             if inner is None:
                 return
-            if tag in SHAPES:
-                self._shape(node, inner)
-            elif tag == "use":
-                self._use(node, inner)
-            elif tag == "svg":
-                self._children(node, self._inner_viewport(node, inner, node.attributes))
-            else:
-                self._children(node, inner)
+            own = inner.look.own
+            first = len(self._shapes)
+            boxed = own.get("transform-box", "view-box").lower() != "view-box"
+            if not boxed:
+                transform = self._transform(node, inner, (0.0, 0.0, state.width, state.height))
+                draw(node, inner if transform is None else inner.moved(transform))
+                return
+            # The box is that of what is drawn, and so it is drawn first.
+            draw(node, inner)
+            drawn = self._shapes[first:]
+            if drawn and abs(np.linalg.det(state.matrix)) > 0.0:
+                back = np.linalg.inv(state.matrix)
+                x0, y0, x1, y1 = exact_box(p.transformed(back) for shape in drawn for p in shape.subpaths)
+                transform = self._transform(node, inner, (x0, y0, x1 - x0, y1 - y0))
+                if transform is not None:
+                    change = _joined(_joined(state.matrix, transform), back)
+                    self._shapes[first:] = [_moved(shape, change) for shape in drawn]
         except SvgValueError as problem:
             raise PatternError(str(problem), element=str(node)) from problem
 
-    def _enter(self, node: Node, style: dict[str, str], state: _State, named: bool = True) -> _State | None:
-        """The state inside ``node``, None when it is not displayed."""
-        if style.get("display", "").lower() == "none":
-            self._left_out[f"<{node.tag}> left out: not displayed"] += 1
-            return None
-        properties = dict(state.properties)
-        for name, initial in INHERITED.items():
-            value = style.get(name)
-            if value is not None and value.lower() not in ("inherit", "unset"):
-                properties[name] = initial if value.lower() == "initial" else value
-        if style.get("clip-path", "none").lower() != "none" or style.get("mask", "none").lower() != "none":
-            self._left_out[f"<{node.tag}> read whole: clipping is not applied"] += 1
-        matrix = state.matrix
-        # The root's own transform is SVG 2; style= and rules may set one as well.
-        if transform := style.get("transform", ""):
-            with np.errstate(over="ignore", invalid="ignore"):
-                matrix = matrix @ parse_transform(transform)
-            if not np.isfinite(matrix).all():
-                raise SvgValueError("the transforms together are not finite")
-        own = node.attributes if named else {}
-        names = [own.get("id", ""), own.get("inkscape:label", ""), own.get("data-name", "")]
-        data = tuple((name, own[name][:_MAX_DATA_LENGTH]) for name in DATA_ATTRIBUTES if name in own)
-        return replace(
-            state,
-            matrix=matrix,
-            properties=properties,
-            opacity=state.opacity * _opacity(style.get("opacity", "1")),
-            classes=(*node.classes, *state.classes) if named else (),
-            names=(*(name for name in names if name), *state.names),
-            data=(*data, *state.data)[:_MAX_DATA] if data else state.data,
-            painted=state.painted or "stroke" in style or "fill" in style,
-            depth=state.depth + 1,
+    def _look(self, node: Node, parent: Computed) -> Computed:
+        return self._styler.compute(self._sheet.style(node), parent)
+
+    def _enter(self, node: Node, state: _State, named: bool = True) -> _State | None:
+        """The state inside ``node`` but for its transforms, None when it is not displayed."""
+        look = self._look(node, state.look)
+        if look.own:
+            if look.own.get("display", "").lower() == "none":
+                self._left_out[f"<{node.tag}> left out: not displayed"] += 1
+                return None
+            if any(look.own.get(name, "none").lower() != "none" for name in ("clip-path", "mask")):
+                self._left_out[f"<{node.tag}> read whole: clipping is not applied"] += 1
+        return _State(
+            state.matrix,
+            look,
+            state.opacity * look.opacity,
+            state.width,
+            state.height,
+            (*_words(node), *state.words)[:MAX_WORDS] if named else (),
+            state.depth + 1,
+            state.used,
         )
 
-    def _inner_viewport(self, node: Node, state: _State, attributes: dict[str, str]) -> _State | None:
+    def _transform(self, node: Node, state: _State, box: tuple[float, float, float, float]) -> FloatArray | None:
+        """(3,3) of all that moves ``node``, about its origin in the reference ``box``; None for nothing."""
+        own = state.look.own
+        attribute = node.attributes.get("transform", "")
+        if not attribute and not own.keys() & _MOVING:
+            return None
+        if len(attribute) > MAX_PROPERTY:
+            raise ReadError(f"transform has more than {MAX_PROPERTY:,} characters", element=str(node))
+        matrix = np.eye(3)
+        with np.errstate(over="ignore", invalid="ignore"):
+            if own.get("translate", "none").lower() != "none":
+                matrix = matrix @ css_translate(own["translate"], *box[2:])
+            if own.get("rotate", "none").lower() != "none":
+                matrix = matrix @ css_rotate(own["rotate"])
+            if own.get("scale", "none").lower() != "none":
+                matrix = matrix @ css_scale(own["scale"])
+            css = own.get("transform")
+            matrix = matrix @ (parse_transform(attribute) if css is None else css_transform(css, *box[2:]))
+            # Of lines, the origin is that of the coordinates, and not the middle (CSS Transforms 1, section 6).
+            if origin := own.get("transform-origin"):
+                matrix = about(matrix, *css_origin(origin, box))
+            elif own.get("transform-box", "view-box").lower() != "view-box":
+                matrix = about(matrix, box[0], box[1])
+        return matrix
+
+    def _inner_viewport(self, node: Node, state: _State, attributes: Mapping[str, str]) -> _State | None:
         def length(name: str, default: str, whole: float) -> float:
             text = attributes.get(name, "").strip() or default
             return self._length(parse_length(default if text == "auto" else text), whole)
@@ -362,20 +405,23 @@ class _Walk:
         if target in state.used:
             raise PatternError(f"it refers to itself through {href[:40]!r}", element=str(node))
         state = replace(state, used=(*state.used, target))
+        measured = _measured(node, state.look)
         if target.tag not in ("symbol", "svg"):
-            x = self._length(parse_length(node.attributes.get("x", "0") or "0"), state.width)
-            y = self._length(parse_length(node.attributes.get("y", "0") or "0"), state.height)
+            x = self._length(parse_length(measured.get("x", "0") or "0"), state.width)
+            y = self._length(parse_length(measured.get("y", "0") or "0"), state.height)
             move = np.array([[1.0, 0.0, x], [0.0, 1.0, y], [0.0, 0.0, 1.0]])
             self._element(target, replace(state, matrix=state.matrix @ move))
             return
         # SVG 1.1, section 5.6: a symbol is an inner <svg> with the size given at the <use>.
         self._elements += 1
-        inner = self._enter(target, self._sheet.style(target), state)
-        if inner is not None:
-            given = {k: v for k, v in node.attributes.items() if k in ("x", "y", "width", "height")}
-            names = ("width", "height") if target.tag == "svg" else ()
-            own = {k: v for k, v in target.attributes.items() if k in names}
-            self._children(target, self._inner_viewport(target, inner, {**own, **given}))
+        given = {k: v for k, v in measured.items() if k in ("x", "y", "width", "height")}
+
+        def draw(node: Node, inner: _State) -> None:
+            names = ("width", "height") if node.tag == "svg" else ()
+            own = {k: v for k, v in _measured(node, inner.look).items() if k in names}
+            self._children(node, self._inner_viewport(node, inner, {**own, **given}))
+
+        self._element_inside(target, state, draw)
 
     # ---- shapes
 
@@ -387,38 +433,49 @@ class _Walk:
         return value
 
     def _shape(self, node: Node, state: _State) -> None:
-        properties = state.properties
-        if properties["visibility"].lower() in ("hidden", "collapse"):
+        look = state.look
+        if not look.visible:
             self._left_out[f"<{node.tag}> left out: hidden"] += 1
             return
-        stroke = self._paint(node, properties["stroke"], properties["color"])
-        fill = self._paint(node, properties["fill"], properties["color"])
-        stroke_width = self._length(parse_length(properties["stroke-width"]), 0.0)
-        if not state.painted and any(name in _DATA_OF_LINES for name, _ in state.data):
+        stroke, fill = look.stroke, look.fill
+        if not look.declared and any(kind in DATA_ATTRIBUTES for kind, _ in state.words):
             # Nothing says how it looks, but what it is.
             stroke, fill = UNKNOWN_COLOUR, None
             self._left_out[
                 f"<{node.tag}> without stroke and fill read as a line, since its data say what it is"
             ] += 1
+        for problem in look.problems:
+            self._left_out[f"<{node.tag}> {problem}"] += 1
+        diagonal = math.hypot(state.width, state.height) / math.sqrt(2.0)
+        filled = fill is not None and state.opacity * fill.opacity * look.fill_opacity > 0.0
         opacity = 0.0
-        if stroke is not None and stroke_width != 0.0:
-            opacity = state.opacity * stroke.opacity * _opacity(properties["stroke-opacity"])
+        if stroke is not None:
+            opacity = state.opacity * stroke.opacity * look.stroke_opacity
             if opacity == 0.0:
                 self._left_out[f"<{node.tag}> stroke left out: fully transparent (no fold)"] += 1
-        filled = fill is not None and state.opacity * fill.opacity * _opacity(properties["fill-opacity"]) > 0.0
+            elif self._length(parse_length(look.stroke_width), diagonal) == 0.0:
+                # A browser shows no such line, but cutters and CAD programs do: it is as thin as the pen.
+                if filled and node.tag != "line":
+                    opacity = 0.0
+                    self._filled_hairlines += 1
+                else:
+                    self._hairlines += 1
         if opacity == 0.0 and not filled:
             return
         outlines = self._outlines.get(node)
         if outlines is None:
-            diagonal = math.hypot(state.width, state.height) / math.sqrt(2.0)
             wholes = {"x": state.width, "y": state.height, "": diagonal}
+            measured = _measured(node, look)
             outlines = shape_subpaths(
                 node.tag,
-                node.attributes,
+                measured,
                 lambda length, direction: self._length(length, wholes[direction]),
             )
-            # Percentages depend on the viewport, all else on the element alone.
-            if node.tag in ("path", "polyline", "polygon") or "%" not in "".join(node.attributes.values()):
+            # Only what <use> draws is drawn again. Percentages and styles depend on the place, all else does not.
+            alone = measured is node.attributes and (
+                node.tag in ("path", "polyline", "polygon") or "%" not in "".join(measured.values())
+            )
+            if state.used and alone:
                 self._outlines[node] = outlines
         self._segments += sum(len(outline.segments) for outline in outlines)
         if self._segments > MAX_POINTS:
@@ -426,11 +483,7 @@ class _Walk:
         if not outlines:
             self._left_out[f"<{node.tag}> left out: it has no length"] += 1
             return
-        with np.errstate(over="ignore", invalid="ignore"):
-            subpaths = tuple(outline.transformed(state.matrix) for outline in outlines)
-        segments = [segment for subpath in subpaths for segment in subpath.segments]
-        if not all((np.abs(segment.points) < MAX_COORDINATE).all() for segment in segments):
-            raise SvgValueError("its coordinates are not finite, or too large to be a drawing")
+        subpaths = tuple(_transformed(outline, state.matrix) for outline in outlines)
         self._shapes.append(
             Drawn(
                 str(node),
@@ -439,30 +492,10 @@ class _Walk:
                 stroke if opacity > 0.0 else None,
                 filled,
                 opacity,
-                self._dashes(properties["stroke-dasharray"]),
-                state.classes,
-                state.names,
-                state.data,
+                look.dashes,
+                state.words,
             )
         )
-
-    def _paint(self, node: Node, text: str, current: str) -> Colour | None:
-        try:
-            return parse_paint(text, current)
-        except SvgValueError as problem:
-            self._left_out[f"<{node.tag}> whose colour is not used: {problem}"] += 1
-            return UNKNOWN_COLOUR
-
-    def _dashes(self, text: str) -> tuple[float, ...]:
-        if text.strip().lower() in ("", "none"):
-            return ()
-        try:
-            lengths = [parse_length(part) for part in text.replace(",", " ").split(None, 32)[:32]]
-        except SvgValueError:
-            return ()
-        values = tuple(length.pixels for length in lengths)
-        # SVG 1.1, section 11.4: nothing but zeros, or anything negative, is a solid line.
-        return values if min(values) >= 0.0 and sum(values) > 0.0 else ()
 
 
 @dataclass(frozen=True)
@@ -478,20 +511,61 @@ class _Viewport:
     page: tuple[float, float, float, float] | None = None
 
 
+def _words(node: Node) -> tuple[tuple[str, str], ...]:
+    """(kind, text) of what one element is called: data, classes, then names."""
+    own = node.attributes
+    shape = node.tag in SHAPES
+    data = [(name, own[name]) for name in (*DATA_ATTRIBUTES, "type") if own.get(name)]
+    classes = [("class" if shape else "class of its group", name) for name in node.classes]
+    group = "group or layer name"
+    labels = [("name" if shape else group, own.get(name, "")) for name in ("inkscape:label", "data-name")]
+    names = [("id" if shape else group, own.get("id", "")), *labels]
+    return (*data, *classes, *((kind, text) for kind, text in names if text))
+
+
 def _left_out(tag: str) -> str:
     return f"<{tag}> left out: not a line"
 
 
-def _aspect(attributes: dict[str, str]) -> tuple[str, bool]:
+def _aspect(attributes: Mapping[str, str]) -> tuple[str, bool]:
     words = attributes.get("preserveAspectRatio", "xMidYMid").split()
     if words[:1] == ["defer"]:
         words = words[1:]
     return (words[0] if words else "xMidYMid"), "slice" in words[1:]
 
 
-def _opacity(text: str) -> float:
-    try:
-        length = parse_length(text)
-    except SvgValueError:
-        return 1.0
-    return min(max(length.resolve(1.0), 0.0), 1.0)
+def _measured(node: Node, look: Computed) -> Mapping[str, str]:
+    """The attributes of an element, with the measures that its style gives in place of its own (SVG 2)."""
+    own = {name: value for name, value in look.own.items() if name in MEASURES} if look.own else {}
+    if node.tag == "path" and "d" in look.own:
+        own["d"] = css_path(look.own["d"]) or ""
+    return {**node.attributes, **own} if own else node.attributes
+
+
+def _joined(outer: FloatArray, inner: FloatArray) -> FloatArray:
+    with np.errstate(over="ignore", invalid="ignore"):
+        matrix = outer @ inner
+    if not np.isfinite(matrix).all():
+        raise SvgValueError("the transforms together are not finite")
+    return np.asarray(matrix)
+
+
+def _moved(shape: Drawn, matrix: FloatArray) -> Drawn:
+    return replace(shape, subpaths=tuple(_transformed(subpath, matrix) for subpath in shape.subpaths))
+
+
+def _transformed(subpath: Subpath, matrix: FloatArray) -> Subpath:
+    """Raises SvgValueError when it gets too large."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        moved = subpath if matrix is _IDENTITY else subpath.transformed(matrix)
+    for segment in moved.segments:
+        if not np.abs(segment.points).max() < MAX_COORDINATE:
+            raise SvgValueError("its coordinates are not finite, or too large to be a drawing")
+    return moved
+
+
+def _hairlines(count: int, filled: bool) -> str:
+    strokes, are = ("1 stroke", "is") if count == 1 else (f"{count} strokes", "are")
+    if filled:
+        return f"{strokes} of width 0 {are} left out, around what is filled"
+    return f"{strokes} of width 0 {are} read as {'a hairline' if count == 1 else 'hairlines'}"

@@ -1,4 +1,4 @@
-"""Reading XML safely: bounded, no entities, no external references.
+"""Reading XML safely: bounded, few and small entities, nothing from outside of the file.
 
 A tree of our own is built straight from expat: the standard tree builders expand entities and cannot be told
 to stop at a depth or a count.
@@ -12,6 +12,8 @@ from functools import cached_property
 from xml.parsers import expat
 
 from ..errors import ReadError
+from .text import decode_xml
+from .xml_entities import Entities
 
 SVG_NAMESPACE = "http://www.w3.org/2000/svg"
 XLINK_NAMESPACE = "http://www.w3.org/1999/xlink"
@@ -61,16 +63,23 @@ class Node:
 
 
 def parse_svg_tree(data: bytes | str) -> Node:
-    """The root <svg> node. Raises ReadError: empty, not XML, not SVG, entities, too deep or too many."""
+    """The root <svg> node. Raises ReadError: empty, not XML, not SVG, too deep or too much of anything."""
     if not data.strip():
         raise ReadError("the file is empty")
-    builder = _Builder()
+    # As text: expat itself knows four encodings, and then takes the declaration for done.
+    data = decode_xml(data)
+    builder = _Builder(data)
     parser = expat.ParserCreate(namespace_separator="}")
     parser.StartElementHandler = builder.start
     parser.EndElementHandler = builder.end
     parser.CharacterDataHandler = builder.characters
     parser.EntityDeclHandler = builder.entity
+    parser.EndDoctypeDeclHandler = builder.end_doctype
+    parser.ExternalEntityRefHandler = builder.external
+    parser.SkippedEntityHandler = builder.skipped
     parser.buffer_text = True
+    # Attributes that a DTD gives to all elements of a kind: a long one would be copied to each of them.
+    parser.specified_attributes = True
     try:
         parser.Parse(data, True)
     except expat.ExpatError as error:
@@ -90,7 +99,9 @@ def parse_svg_tree(data: bytes | str) -> Node:
 class _Builder:
     """Expat's events -> nodes."""
 
-    def __init__(self) -> None:
+    def __init__(self, text: str) -> None:
+        self._text = text
+        self._entities = Entities()
         self.root: Node | None = None
         self.root_name = ""
         self._open: list[Node] = []
@@ -122,8 +133,21 @@ class _Builder:
         if self._open and self._open[-1].tag == "style":
             self._open[-1].text += text
 
-    def entity(self, name: str, *_rest: object) -> None:
-        raise ReadError(f"the file declares an XML entity ({name!r}), which is not read; save it as plain SVG")
+    def entity(self, name: str, parameter: int, value: str | None, *_rest: object) -> None:
+        # Those of other files have no value here, and parameter entities are never put anywhere.
+        if value is not None and not parameter:
+            self._entities.declare(name, value)
+
+    def end_doctype(self) -> None:
+        if self._entities:
+            self._entities.check(self._text)
+
+    def external(self, _context: str | None, _base: str | None, system: str | None, public: str | None) -> int:
+        raise ReadError(f"it refers to another file ({(system or public or '')[:80]!r}) by an XML entity, not read")
+
+    def skipped(self, name: str, parameter: int) -> None:
+        if not parameter:
+            raise ReadError(f"it refers to the XML entity {name[:40]!r}, which is not declared in it")
 
 
 def _attributes(attributes: dict[str, str]) -> dict[str, str]:

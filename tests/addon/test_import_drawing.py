@@ -90,7 +90,7 @@ def test_a_folded_form_is_one_sentence(fold_file):
 def test_both_kinds_of_files_are_offered():
     for name in ("import_drawing", "fold_drawing"):
         properties = getattr(bpy.ops.curvefold, name).get_rna_type().properties
-        assert properties["filter_glob"].default == "*.svg;*.fold"
+        assert properties["filter_glob"].default == "*.svg;*.svgz;*.fold"
 
 
 def test_a_bad_drawing_is_one_sentence(broken_drawing):
@@ -117,7 +117,7 @@ def test_only_in_object_mode(drawing):
 def test_a_dropped_drawing(extension, drawing, fold_file):
     handler = bpy.types.CURVEFOLD_FH_drawing
     assert handler.bl_import_operator == "curvefold.import_drawing"
-    assert handler.bl_file_extensions == ".svg;.fold"
+    assert handler.bl_file_extensions == ".svg;.svgz;.fold"
     window = bpy.context.window_manager.windows[0]
     areas = {area.type: area for area in window.screen.areas}
     with bpy.context.temp_override(window=window, area=areas["VIEW_3D"]):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from solver.pattern.meaning import MAX_WORDS
 from solver.pattern.svg_values import UNKNOWN_COLOUR
 from solver.pattern.svg_walk import Drawing, read_drawing
 from solver.pattern.svg_xml import parse_svg_tree
@@ -48,28 +49,35 @@ def test_texts_are_counted() -> None:
     assert drawing("").text == 0
 
 
-def test_data_come_from_the_inside_out() -> None:
+def test_words_are_of_each_element_its_data_then_classes_then_names_from_the_inside_out() -> None:
     [shape] = drawing(
-        '<g inkscape:label="Layer 1" type="outer"><g data-layer="folds" data-other="?">'
-        '<path data-type="mountain" data-assignment="M" d="M0 0H9" stroke="black"/></g></g>'
+        '<g id="g1" inkscape:label="Layer 1" type="outer"><g data-layer="folds" data-other="?" class="a b">'
+        '<path id="p" data-type="mountain" class="c" data-name="Path" data-assignment="M" d="M0 0H9" '
+        'stroke="black"/></g></g>',
+        'id="root" class="r"',
     ).shapes
-    assert shape.data == (
+    assert shape.words == (
         ("data-assignment", "M"),
         ("data-type", "mountain"),
+        ("class", "c"),
+        ("id", "p"),
+        ("name", "Path"),
         ("data-layer", "folds"),
+        ("class of its group", "a"),
+        ("class of its group", "b"),
         ("type", "outer"),
-        ("inkscape:label", "Layer 1"),
+        ("group or layer name", "g1"),
+        ("group or layer name", "Layer 1"),
     )
 
 
-def test_data_are_bounded() -> None:
-    value = "v" * 10_000
-    body = f'<line x2="9" stroke="red" data-type="{value}"/>'
-    for _ in range(50):
-        body = f'<g data-type="{value}" data-fold="{value}">{body}</g>'
+def test_words_are_bounded() -> None:
+    body = '<line x2="9" stroke="red" data-type="own"/>'
+    for _ in range(90):
+        body = f'<g data-type="a" data-fold="b">{body}</g>'
     [shape] = drawing(body).shapes
-    assert len(shape.data) == 20
-    assert all(len(text) == 100 for _, text in shape.data)
+    assert len(shape.words) == MAX_WORDS
+    assert shape.words[0] == ("data-type", "own")
 
 
 def test_a_shape_that_only_its_data_describe_is_a_line() -> None:
