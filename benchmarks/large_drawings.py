@@ -19,10 +19,15 @@ _BORDER = f'<rect width="{SIDE:g}" height="{SIDE:g}" fill="none" stroke="#000"/>
 
 
 def class_lines(count: int) -> str:
-    """Short lines in rows, whose classes a style sheet colours."""
+    """Short lines in rows, whose classes a style sheet colours. No two of them are dashes of one line."""
+
+    def slope(k: int) -> float:
+        return 0.2 + 0.6 * (k * 0.618034 % 1.0)
+
     style = "<style>.m{stroke:#f00}.v{stroke:#00f}.m,.v{fill:none;stroke-width:.5px}</style>"
     rows = [
-        f'<line class="{"mv"[k % 2]}" x1="{x:.3f}" y1="{y:.3f}" x2="{x + step:.3f}" y2="{y:.3f}"/>'
+        f'<line class="{"mv"[k % 2]}" x1="{x:.3f}" y1="{y:.3f}" '
+        f'x2="{x + step:.3f}" y2="{y + step * slope(k):.3f}"/>'
         for k, (x, y, step) in enumerate(_cells(count - 3))
     ]
     return "\n".join([_HEAD, style, _BORDER, *rows, "</svg>"])

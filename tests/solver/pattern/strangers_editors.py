@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from xml.sax.saxutils import escape
 
+import shapely
+
 from tests.solver.pattern.strangers_designs import Rng
-from tests.solver.pattern.strangers_habits import Page, Stroke
+from tests.solver.pattern.strangers_habits import Page
 from tests.solver.pattern.strangers_pen import Export, Look, groups, pen_for
 
 XML = '<?xml version="1.0" encoding="UTF-8" standalone="no"?>\n'
@@ -459,11 +461,11 @@ def cricut(page: Page, look: Look, rng: Rng) -> Export:
     """Design Space: what is cut is a filled shape without a line, what is scored is a line."""
     pen = pen_for(page, PT, digits=2)
     rows = []
-    border = page.of("border")
-    whole = Stroke("border", border[0].curve, border[0].smooth)
-    rings = [whole, *page.of("hole")]
-    data = " ".join(pen.data(ring) for ring in rings)
-    rows.append(f'<path id="Cut" fill="#D9D9D9" fill-rule="evenodd" stroke="none" d="{data}"/>')
+    for sheet in page.of("border"):
+        inside = shapely.Polygon(sheet.curve.points())
+        rings = [sheet, *(hole for hole in page.of("hole") if inside.covers(shapely.Polygon(hole.curve.points())))]
+        data = " ".join(pen.data(ring) for ring in rings)
+        rows.append(f'<path id="Cut" fill="#D9D9D9" fill-rule="evenodd" stroke="none" d="{data}"/>')
     for name, kinds in (("Score", ("M", "V", "U")), ("Cut lines", ("cut",))):
         strokes = page.of(*kinds)
         if strokes:
