@@ -11,21 +11,17 @@ from __future__ import annotations
 
 import argparse
 import json
-import multiprocessing
-import os
 import sys
-import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
-from multiprocessing.connection import Connection, wait
-from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.corpus_drawings import FAMILIES
 from benchmarks.corpus_run import FLAT_AGAIN, Job, Run, do
+from benchmarks.processes import each_alone
 from solver.fold import MAX_MEAN_STRETCH
 
 #: Seconds after which a run counts as hung.
@@ -34,46 +30,17 @@ TIME_LIMIT = 300.0
 # --- processes ------------------------------------------------------------------------------------------
 
 
-def _child(job: Job, pipe: Connection) -> None:
-    pipe.send(do(job))
-    pipe.close()
-
-
 def do_all(jobs: Sequence[Job], processes: int) -> Iterator[Run]:
     """Every job in a process of its own, ``processes`` at a time; runs come in the order they end."""
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read by the processes started below
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["benchmarks.corpus_run"])
-    waiting = list(reversed(jobs))
-    running: dict[Connection, tuple[Job, BaseProcess, float]] = {}
-    while waiting or running:
-        while waiting and len(running) < processes:
-            job = waiting.pop()
-            mine, theirs = context.Pipe(duplex=False)
-            process = context.Process(target=_child, args=(job, theirs), daemon=True)
-            process.start()
-            theirs.close()
-            running[mine] = job, process, time.monotonic()
-        done = wait(list(running), timeout=1.0)
-        for pipe, (job, process, began) in list(running.items()):
-            if pipe in done:
-                try:
-                    run = pipe.recv()
-                except EOFError:
-                    process.join()
-                    run = Run(job.seed, sentence=f"the process died ({process.exitcode})", drawing=job.drawing)
-            elif time.monotonic() - began > TIME_LIMIT:
-                process.kill()
-                run = Run(job.seed, status="hang", sentence=f"no end after {TIME_LIMIT:.0f} s", drawing=job.drawing)
-                run.seconds = TIME_LIMIT
-            else:
-                continue
-            if not run.family:
-                run.family = Path(job.drawing).stem if job.drawing else list(FAMILIES)[job.seed % len(FAMILIES)]
-            process.join()
-            pipe.close()
-            del running[pipe]
-            yield run
+    for ended in each_alone(jobs, do, processes, TIME_LIMIT):
+        job, run = ended.job, ended.result
+        if run is None:
+            run = Run(job.seed, sentence=ended.sentence, drawing=job.drawing)
+            if ended.hung:
+                run.status, run.seconds = "hang", TIME_LIMIT
+        if not run.family:
+            run.family = Path(job.drawing).stem if job.drawing else list(FAMILIES)[job.seed % len(FAMILIES)]
+        yield run
 
 
 # --- what is printed ------------------------------------------------------------------------------------

@@ -80,14 +80,14 @@ def do(job: Job) -> Run:
             run.family = drawing.family
             net = solver.build_net(drawing.pattern, drawing.resolution)
             drag = make_drag(job.seed, drawing, net)
-            _drag(run, net, drag)
+            drag_net(run, net, drag)
             if drag.feasible and not run.ok and run.status != "not flat again":
                 run.reason = _reason(drawing, drag)
         else:
             run.family = Path(job.drawing).stem
             pattern = solver.read_pattern(job.drawing)
             net = solver.build_net(pattern, PROTOCOL_RESOLUTION)
-            _drag(run, net, protocol_drag(pattern))
+            drag_net(run, net, protocol_drag(pattern))
     except solver.CurvefoldError as error:
         run.status, run.sentence = "refused", str(error)
     except Exception as error:
@@ -99,7 +99,7 @@ def do(job: Job) -> Run:
     return run
 
 
-def _drag(run: Run, net: solver.PiecewiseDog, drag: Drag) -> None:
+def drag_net(run: Run, net: solver.PiecewiseDog, drag: Drag) -> None:
     run.drag = f"{drag.kind}{' at once' if drag.frames == 1 else ''}"
     run.feasible = drag.feasible
     run.vertices = len(net.rest)

@@ -8,9 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.large_drawings import LARGE
+
 #: Bytes of memory a byte of a file of a megabyte (docs/reliability.md); Python and its libraries come before.
 MULTIPLE = 80
 MEGABYTE = 1_000_000
+#: Strokes of a large drawing that is read, a little fewer than may be.
+STROKES = 19_900
 #: Reads the file named in the arguments, and prints by how many bytes its peak of memory grew.
 READ = """
 import re, sys
@@ -23,7 +27,9 @@ try:
     if sys.argv[1].endswith(".json"):
         read_handles(sys.argv[1])
     else:
-        solver.build_net(solver.read_pattern(sys.argv[1]), 16)
+        patterns = solver.read_patterns(sys.argv[1])
+        if len(sys.argv) == 2:
+            solver.build_net(patterns[0], 16)
 except solver.CurvefoldError:
     pass
 print(1024 * (peak() - before))
@@ -51,6 +57,21 @@ def repeated(begin: str, middle: str, end: str) -> str:
 def test_reading_takes_no_more_memory_than_a_multiple_of_the_file(tmp_path: Path, name: str, text: str) -> None:
     path = tmp_path / name
     path.write_text(text, encoding="utf-8")
-    done = subprocess.run([sys.executable, "-c", READ, str(path)], capture_output=True, text=True, timeout=120)
+    assert 0 < taken(path) < MULTIPLE * MEGABYTE
+
+
+@pytest.mark.parametrize("name", LARGE)
+@pytest.mark.skipif(sys.platform != "linux", reason="peaks of memory are read from /proc")
+def test_thousands_of_strokes_take_no_more_memory_than_a_multiple_of_the_file(tmp_path: Path, name: str) -> None:
+    suffix, make = LARGE[name]
+    path = tmp_path / f"large{suffix}"
+    path.write_text(make(STROKES), encoding="utf-8")
+    assert 0 < taken(path, "without a net") < MULTIPLE * path.stat().st_size
+
+
+def taken(path: Path, *options: str) -> int:
+    """Bytes by which the peak of memory grew in a process of its own."""
+    command = [sys.executable, "-c", READ, str(path), *options]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
-    assert 0 < int(done.stdout) < MULTIPLE * MEGABYTE
+    return int(done.stdout)
