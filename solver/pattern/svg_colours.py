@@ -51,6 +51,8 @@ def parse_paint(text: str, current: str = "black") -> Colour | None:
     return None if colour == _TRANSPARENT else colour
 
 
+#: Names that svgelements 1.9.6 does not know, or not well.
+_CORRECTED = {"rebeccapurple": "#663399", "aliceblue": "#f0f8ff"}
 _TRANSPARENT = Colour(0.0, 0.0, 0.0, 0.0)
 
 
@@ -61,7 +63,7 @@ def parse_colour(text: str, current: str = "black") -> Colour:
         return UNKNOWN_COLOUR if current.strip().lower() == "currentcolor" else parse_colour(current)
     try:
         colour = _colour(word, current) if len(word) <= MAX_COLOUR else None
-    except ArithmeticError:
+    except (ArithmeticError, ValueError):
         colour = None
     if colour is None or not all(map(math.isfinite, (colour.red, colour.green, colour.blue, colour.opacity))):
         raise SvgValueError(f"the colour {text.strip()[:40]!r} is not known")
@@ -93,6 +95,8 @@ def _named(word: str) -> Colour | None:
         return _TRANSPARENT
     if word in SYSTEM_COLOURS:
         return UNKNOWN_COLOUR
+    if word in _CORRECTED:
+        return _colour(_CORRECTED[word], word)
     # svgelements answers opaque black to unknown words, so black itself is asked for by name.
     named = svgelements.Color(word if len(word) < 40 else "black")
     if named.value is None or (named == "black" and word != "black"):

@@ -14,7 +14,7 @@ from .svg_values import ANGLES, NUMBER, SvgValueError, finite, parse_length
 _SEPARATOR = re.compile(r"[\s,]*")
 _FUNCTION = re.compile(r"[\s,]*([A-Za-z]+)\s*\(([^()]*)\)")
 _CSS_FUNCTION = re.compile(r"\s*([A-Za-z0-9]+)\(([^()]*)\)")
-_ARGUMENT = re.compile(rf"({NUMBER})([A-Za-z]*|%)[\s,]*")
+_ARGUMENT = re.compile(rf"({NUMBER})(%|[A-Za-z]*)[\s,]*")
 #: Function -> the numbers of arguments it may have (SVG 1.1, section 7.6).
 _TRANSFORMS = {
     "matrix": (6,),
@@ -74,22 +74,19 @@ def css_scale(text: str) -> FloatArray:
 
 def css_origin(text: str, box: Sequence[float]) -> tuple[float, float]:
     """The point of transform-origin in ``box`` (x, y, width, height). Raises SvgValueError."""
-    words = _words(text, 3)[:2]  # the third one is z
-    places: list[float | None] = [None, None]
-    for k, word in enumerate(words):
-        named = _PLACES.get(word.lower())
-        axis = named[0] if named else k
-        # A keyword may come in the other axis' place, and takes it with it: "top left", "top center".
-        if named is None and len(words) == 2 and _PLACES.get(words[1 - k].lower(), (1 - k, 0.0))[0] == k:
-            axis = 1 - k
-        if places[axis] is not None:
+    words = [word.lower() for word in _words(text, 3)[:2]]  # the third one is z
+    named = [word in _PLACES or word == "center" for word in words]
+    # Two words may come in either order, a word and a length may not: "top left", but not "top 20px".
+    if all(named) and any(_PLACES.get(word, (k, 0.0))[0] != k for k, word in enumerate(words)):
+        words = [*words, "center"][:2][::-1]
+    places = [0.5 * box[2], 0.5 * box[3]]
+    for axis, word in enumerate(words):
+        if word in _PLACES and _PLACES[word][0] != axis:
             raise SvgValueError(f"{text[:40]!r} is not an origin")
-        if named or word.lower() == "center":
-            places[axis] = box[axis] + (named[1] if named else 0.5) * box[axis + 2]
-        else:
-            places[axis] = box[axis] + parse_length(word).resolve(box[axis + 2])
-    x, y = (box[k] + 0.5 * box[k + 2] if place is None else place for k, place in enumerate(places))
-    return x, y
+        share = 0.5 if word == "center" else _PLACES[word][1] if word in _PLACES else None
+        whole = box[axis + 2]
+        places[axis] = parse_length(word).resolve(whole) if share is None else share * whole
+    return box[0] + places[0], box[1] + places[1]
 
 
 def about(matrix: FloatArray, x: float, y: float) -> FloatArray:

@@ -24,10 +24,13 @@ def why_no_line(shapes: Iterable[Drawn]) -> str:
     count = "1 filled shape" if len(filled) == 1 else f"{len(filled)} filled shapes"
     if thin == 0:
         return f"the drawing has no line: nothing in it is stroked, and it has only {count}"
-    those = "" if len(filled) == 1 else "all of them " if thin == len(filled) else f"{thin} of them "
+    if len(filled) == 1:
+        those = f"its {count}, as thin as a line, was a stroke"
+    else:
+        those = f"its {count}, {'all' if thin == len(filled) else thin} of them as thin as a line, were strokes"
     return (
-        f"the drawing has no line: nothing in it is stroked, and its {count}, {those}as thin as a line, were "
-        'strokes once; keep them as strokes (undo "Stroke to Path", "Outline Stroke" or "Expand")'
+        f"the drawing has no line: nothing in it is stroked, and {those} once; keep strokes as strokes"
+        ' (undo "Stroke to Path", "Outline Stroke" or "Expand")'
     )
 
 

@@ -49,6 +49,16 @@ def repeated(begin: str, middle: str, end: str) -> str:
             repeated(f'{BEGIN}<path stroke="red" d="M 0 5', " L 1.2345 6.7891 L 8.1234 2.3456", '"/></svg>'),
         ),
         ("tags.svg", repeated(BEGIN, '<g><path stroke="red" d="M0 0 L1 1"/></g>', "</svg>")),
+        (
+            "looks.svg",
+            BEGIN + "".join(f'<path style="stroke:#{k:06x}" d="M0 0H1"/>' for k in range(22_000)) + "</svg>",
+        ),
+        (
+            "rules.svg",
+            BEGIN + "<style>" + "".join(f".c{k}{{stroke:red}}" for k in range(19_000)) + "</style></svg>",
+        ),
+        ("broken.svg", repeated(BEGIN + "<style>", "a{b(c[", "</style></svg>")),
+        ("entities.svg", repeated(f'<!DOCTYPE svg [<!ENTITY a "{"a" * 2}">]>{BEGIN}<g id="', "&a;", '"/></svg>')),
         ("points.fold", repeated('{"vertices_coords":[[0,0]', ",[1,2]", '],"edges_vertices":[[0,1]]}')),
         ("handles.json", repeated('[{"at":[0,0],"target":[1,1,1]}', ',{"at":[0,0],"target":[1,1,1]}', "]")),
     ],
