@@ -26,8 +26,10 @@ MAX_FRAMES = 10_000
 MAX_PARENTS = 100
 #: Vertices farther than this from their plane, relative to the drawing's longer side, are not flat.
 _FLAT = 1e-4
-#: Faces that lie on each other with less than this part of their area do so by rounding.
-_OVERLAP = 1e-4
+#: Faces of less than this part of the mean area have no width.
+_NO_WIDTH = 1e-6
+#: Faces are made smaller by this part of their root of area before they are said to lie on each other: rounding.
+_ROUNDING = 1e-6
 #: How much of a file's words messages and notes repeat.
 _WORDS = 60
 
@@ -186,12 +188,23 @@ def _lies_open(file: FoldFile, index: int, points: FloatArray) -> bool:
     if len(faces.lengths):
         rings = np.repeat(np.arange(len(faces.lengths)), faces.lengths)
         polygons = shapely.polygons(shapely.linearrings(points[faces.vertices], indices=rings))
-        if not shapely.is_valid(polygons).all():
-            return False
-        whole = float(shapely.area(polygons).sum())
-        return whole - float(shapely.union_all(polygons).area) <= _OVERLAP * whole
+        # A face of no width, as triangulations have them, lies on nothing; one that crosses itself does.
+        areas = shapely.area(polygons)
+        polygons = polygons[areas > _NO_WIDTH * float(areas.mean())]
+        return bool(shapely.is_valid(polygons).all()) and not _overlap(polygons)
     lines = shapely.linestrings(points[edges.vertices].reshape(-1, 2, 2))
     return bool(len(lines)) and not len(shapely.STRtree(lines).query(lines, predicate="crosses")[0])
+
+
+def _overlap(polygons: Any) -> bool:
+    """Whether any of the faces (F,) lie on each other. A face with another one amid it is one with a hole."""
+    smaller = shapely.buffer(polygons, -_ROUNDING * np.sqrt(shapely.area(polygons)))
+    one, other = shapely.STRtree(polygons).query(smaller, predicate="intersects")
+    one, other = one[one != other], other[one != other]
+    apart = shapely.contains_properly(polygons[other], polygons[one]) | shapely.contains_properly(
+        polygons[one], polygons[other]
+    )
+    return not bool(apart.all())
 
 
 def _said(file: FoldFile, index: int) -> tuple[str, ...]:

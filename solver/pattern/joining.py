@@ -28,7 +28,7 @@ _DASH_TURN = np.radians(25.0)
 #: Gaps between dashes, relative to their median.
 _GAP_RATIOS = (0.5, 1.6)
 #: A gap is at most this many times as long as the longest dash of its line.
-_GAP_TO_DASH = 2.0
+_GAP_TO_DASH = 1.5
 #: Dashes of one length differ by this factor at most.
 _SAME_LENGTH = 1.5
 #: Ends that are looked at when the next dash is searched.

@@ -19,14 +19,26 @@ _MOST_SAID = 20
 _NEAR = 2.0
 
 
+def without_copies(strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[str]]:
+    """The strokes without those that are the very points of an earlier one of the same role, and a note."""
+    seen: set[tuple[Role, bytes]] = set()
+    kept = []
+    for stroke in strokes:
+        points = stroke.curve.points
+        key = stroke.decision.role, min(points.tobytes(), points[::-1].tobytes())
+        if key not in seen:
+            kept.append(stroke)
+        seen.add(key)
+    return kept, _twice(len(strokes) - len(kept))
+
+
 def settle_same_lines(strokes: Sequence[Stroke], tolerance: float) -> tuple[list[Stroke], list[str], list[str]]:
-    """The strokes without copies; notes; and what is drawn as a mountain and as a valley, in words.
+    """The strokes without creases that lie on earlier ones; notes; and what is drawn as a mountain and as a valley.
 
     A crease that is both has no side of its own. tolerance: how near two lines are the same, drawing units.
     """
-    exact = _exact_copies(strokes)
-    creases = [k for k, s in enumerate(strokes) if s.decision.role in _CREASES and k not in exact]
-    copies = len(exact)
+    creases = [k for k, stroke in enumerate(strokes) if stroke.decision.role in _CREASES]
+    copies = 0
     dropped: set[int] = set()
     changed: dict[int, Stroke] = {}
     conflicts: list[str] = []
@@ -52,25 +64,15 @@ def settle_same_lines(strokes: Sequence[Stroke], tolerance: float) -> tuple[list
     notes = [f"{conflict}; it is left unassigned" for conflict in conflicts[:_MOST_SAID]]
     if len(conflicts) > _MOST_SAID:
         notes.append(f"{len(conflicts) - _MOST_SAID:,} more lines are drawn as mountains and as valleys")
-    if copies:
-        notes.append(f"{'1 line was' if copies == 1 else f'{copies:,} lines were'} drawn twice and count once")
-    out = exact | {creases[a] for a in dropped}
+    notes += _twice(copies)
+    out = {creases[a] for a in dropped}
     return [changed.get(k, stroke) for k, stroke in enumerate(strokes) if k not in out], notes, conflicts
 
 
-def _exact_copies(strokes: Sequence[Stroke]) -> set[int]:
-    """Creases that are the same points of the same role as an earlier one, in either direction."""
-    seen: set[tuple[Role, bytes]] = set()
-    copies = set()
-    for k, stroke in enumerate(strokes):
-        if stroke.decision.role not in _CREASES:
-            continue
-        points = stroke.curve.points
-        key = stroke.decision.role, min(points.tobytes(), points[::-1].tobytes())
-        if key in seen:
-            copies.add(k)
-        seen.add(key)
-    return copies
+def _twice(copies: int) -> list[str]:
+    if not copies:
+        return []
+    return [f"{'1 line was' if copies == 1 else f'{copies:,} lines were'} drawn twice and count once"]
 
 
 def _same(one: shapely.LineString, other: shapely.LineString, tolerance: float) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 import shapely
@@ -19,11 +19,14 @@ from .stroke import CREASE_ROLES, EDGE_ROLES, Role, Stroke
 _SHARE_NAMED = 0.9
 _SHARE_BLACK = 0.5
 _SHARE_ANY = 0.95
+#: Where nothing says anything, outlines that all other lines are inside or beside need to hold this share of them:
+#: dimensions and texts stand beside a sheet.
+_SHARE_APART = 0.3
 #: An outline inside another one that holds this share of the creases is the sheet, and the outer one a frame.
 _SHARE_FRAMED = 0.99
-#: How far ends of a border may be apart, parts of the drawing's longer side: as near as ends are joined anyway,
-#: then as far as ends of creases are snapped, and at last, where nothing else closes, by what is hardly meant.
-_REACHES = (JOIN, 2e-3, 2e-2)
+#: How far ends of a border may be apart, parts of the drawing's longer side: as near as ends are joined anyway, as
+#: far as ends of creases are snapped, and where nothing else closes in steps up to what nobody draws as a gap.
+_REACHES = (JOIN, 2e-3, 5e-3, 1e-2, 2e-2)
 #: The page holds less than this share of what is drawn when the drawing has slipped off it.
 _SHARE_PAGE = 0.5
 #: Evidence that a line is a crease which does not keep it from being the border, when nothing else is.
@@ -37,11 +40,13 @@ class Found:
     """The sheets of a drawing, in the order of the strokes that they are made of.
 
     frames  indices of strokes that are frames around sheets
+    holes   of each sheet that is a filled shape, what the shape leaves out; empty where sheets are drawn
     notes   why these are the sheets
     """
 
     sheets: tuple[Ring, ...]
     frames: frozenset[int] = frozenset()
+    holes: tuple[tuple[Ring, ...], ...] = ()
     notes: tuple[str, ...] = ()
 
 
@@ -50,14 +55,14 @@ class Search:
     """What sheets are searched in.
 
     strokes  of the drawing
-    filled   outlines (P,2) of shapes that are filled and not stroked
+    filled   of each shape that is filled and not stroked, its closed outlines (P,2)
     page     x and y minimum, x and y maximum, or None
     size     longer side of the drawing
     marked   whether anything says "I am a crease"; otherwise black lines are the creases
     """
 
     strokes: Sequence[Stroke]
-    filled: Sequence[FloatArray]
+    filled: Sequence[Sequence[FloatArray]]
     page: tuple[float, float, float, float] | None
     size: float
     marked: bool
@@ -83,13 +88,18 @@ def find_sheets(search: Search, border: str) -> Found:
     """The sheets. border: "auto", "outline" or "page". Raises PatternError, with the place of an open border."""
     if border == "page":
         return _page(search, "the page is the sheet, as asked")
-    for reach in _REACHES[:2]:
-        found = _drawn(search, reach) or _filled(search) or _outermost(search, reach)
+    # A border that is open by a little is meant before what is painted behind it, and before its page.
+    for reach in _REACHES:
+        found = _drawn(search, reach)
         if found is not None:
             return found
-    found = _drawn(search, _REACHES[2])
+    found = _filled(search)
     if found is not None:
         return found
+    for reach in _REACHES[:2]:
+        found = _outermost(search, reach)
+        if found is not None:
+            return found
     gap = _open_place(search)
     if gap is not None:
         x, y = gap.place.tolist()
@@ -165,11 +175,21 @@ def _holding(
         return rings
     total = float(shapely.length(lines).sum())
     tree = shapely.STRtree(lines)
-    held = np.array([_length_inside(ring.polygon.buffer(search.tolerance), lines, tree) for ring in rings])
-    if held.sum() < share * total:
-        # One of several outlines that touch nothing may be it alone, as before others were counted in.
+    grown = [ring.polygon.buffer(search.tolerance) for ring in rings]
+    held = np.array([_length_inside(polygon, lines, tree) for polygon in grown])
+    if held.sum() < share * total and (
+        search.marked or held.sum() < _SHARE_APART * total or _crossed(grown, lines) > (1.0 - share) * total
+    ):
         return []
     return [ring for ring, length in zip(rings, held.tolist(), strict=True) if length > search.tolerance]
+
+
+def _crossed(polygons: Sequence[shapely.Polygon], lines: Geometries) -> float:
+    """The length of the lines that are neither wholly inside one of the polygons nor wholly outside all."""
+    union = shapely.union_all(polygons)
+    shapely.prepare(union)
+    apart = shapely.covers(union, lines) | ~shapely.intersects(union, lines)
+    return float(shapely.length(lines[~apart]).sum())
 
 
 def _length_inside(polygon: shapely.Polygon, lines: Geometries, tree: shapely.STRtree) -> float:
@@ -195,7 +215,7 @@ def _without_frames(
         ring = waiting.pop()
         rest = [i for i in candidates if i not in ring.members and i not in frames]
         mine = np.array(creases)[shapely.intersects(ring.polygon, lines)].tolist()
-        inner = _inside(search, ring, rest, mine)
+        inner = next((found for reach in _REACHES if (found := _inside(search, ring, rest, mine, reach))), [])
         if inner:
             frames |= ring.members
             waiting.extend(reversed(inner))
@@ -204,20 +224,20 @@ def _without_frames(
     return kept, frozenset(frames)
 
 
-def _inside(search: Search, sheet: Ring, rest: Sequence[int], creases: Sequence[int]) -> list[Ring]:
+def _inside(search: Search, sheet: Ring, rest: Sequence[int], creases: Sequence[int], reach: float) -> list[Ring]:
     """The outlines apart from ``sheet`` inside it that hold all of its creases together."""
     lines = curve_lines(search.some(creases))
     if not len(lines):
         return []
     tree = shapely.STRtree(lines)
     rings = []
-    for group in touching_groups(search.curves, rest, search.tolerance):
+    for group in touching_groups(search.curves, rest, reach * search.size):
         box = shapely.box(*shapely.total_bounds(curve_lines(search.some(group))))
         if not len(tree.query(box)):
             continue
         rings += [
             ring
-            for ring in outer_rings(search.curves, group, search.size)
+            for ring in outer_rings(search.curves, group, search.size, reach)
             if ring.polygon.area < sheet.polygon.area
             and shapely.distance(ring.polygon.exterior, sheet.polygon.exterior) > search.tolerance
         ]
@@ -234,28 +254,50 @@ def _found(rings: Sequence[Ring], frames: frozenset[int], explained: str) -> Fou
             x, y = gap.place.tolist()
             notes.append(f"the border was open by {gap.width:.4g} near ({x:.4g}, {y:.4g}) and was closed there")
     ordered = sorted(rings, key=lambda ring: min(ring.members, default=0))
-    return Found(tuple(ordered), frames, tuple(notes))
+    return Found(tuple(ordered), frames, notes=tuple(notes))
 
 
 # ---- no drawn outline
 
 
 def _filled(search: Search) -> Found | None:
-    """The smallest filled shape that holds the creases, nearly all of them if there is one."""
-    lines = search.having(CREASE_ROLES) or search.having([Role.DARK, Role.PALE])
-    if not lines:
+    """The smallest filled shape that holds the creases, or the shapes that hold them together."""
+    chosen = search.having(CREASE_ROLES) or search.having([Role.DARK, Role.PALE])
+    lines = curve_lines(search.some(chosen))
+    if not len(lines) or not search.filled:
         return None
-    creases = search.some(lines)
-    rings: list[tuple[bool, float, Ring]] = []
-    for points in search.filled:
-        for ring in outer_rings([Curve(points, True, None)], [0], search.size)[:1]:
-            held = share_inside(ring.polygon, creases, search.tolerance)
-            if held >= _SHARE_NAMED:
-                rings.append((held < _SHARE_FRAMED, ring.polygon.area, replace(ring, members=frozenset())))
-    if not rings:
-        return None
+    total = float(shapely.length(lines).sum())
+    tree = shapely.STRtree(lines)
+    areas = [area for area in map(_painted, search.filled) if area is not None and area.area > search.tolerance**2]
+    held = [_length_inside(area.buffer(search.tolerance), lines, tree) / total for area in areas]
+    single = [k for k, share in enumerate(held) if share >= _SHARE_NAMED]
+    if single:
+        sheets = [areas[min(single, key=lambda k: (held[k] < _SHARE_FRAMED, areas[k].area))]]
+    else:
+        sheets = [area for area, share in zip(areas, held, strict=True) if share * total > search.tolerance]
+        apart = float(shapely.union_all(sheets).area) > _SHARE_FRAMED * sum(area.area for area in sheets)
+        if sum(held) < _SHARE_NAMED or not apart:
+            return None
     why = "the border is a filled shape without a stroke: no stroke closes around the creases"
-    return Found((min(rings, key=lambda entry: entry[:2])[2],), notes=(why,))
+    return Found(
+        tuple(_ring(sheet.exterior) for sheet in sheets),
+        holes=tuple(tuple(_ring(hole) for hole in sheet.interiors) for sheet in sheets),
+        notes=(why,),
+    )
+
+
+def _painted(outlines: Sequence[FloatArray]) -> shapely.Polygon | None:
+    """What a shape of one or several closed outlines paints, where that is one piece: inner outlines are holes."""
+    rings = sorted((shapely.Polygon(points) for points in outlines), key=lambda ring: -ring.area)
+    if not all(ring.is_valid for ring in rings):
+        return None
+    area = rings[0].difference(shapely.union_all(rings[1:])) if len(rings) > 1 else rings[0]
+    return area if isinstance(area, shapely.Polygon) and not area.is_empty else None
+
+
+def _ring(line: shapely.LinearRing) -> Ring:
+    points = shapely.get_coordinates(line)[:-1]
+    return Ring(points, shapely.Polygon(points), frozenset())
 
 
 def _open_place(search: Search) -> Gap | None:

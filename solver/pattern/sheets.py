@@ -79,7 +79,8 @@ def _patterns(
         own = replace(ring, members=frozenset(local[i] for i in ring.members))
         told = [f"sheet {number} of {len(found.sheets)} in the file", *notes] if several else list(notes)
         sheet = _Sheet([strokes[i] for i in mine], size, marked)
-        patterns.append(sheet.pattern(own, lines, [] if number > 1 else apart, told, conflicts))
+        left_out = found.holes[number - 1] if found.holes else ()
+        patterns.append(sheet.pattern(own, left_out, lines, [] if number > 1 else apart, told, conflicts))
     return tuple(patterns)
 
 
@@ -106,6 +107,7 @@ class _Sheet:
     def pattern(
         self,
         sheet: Ring,
+        left_out: Sequence[Ring],
         lines: Lines,
         apart: Sequence[Stroke],
         notes: Sequence[str],
@@ -114,7 +116,7 @@ class _Sheet:
         for i in sheet.members:
             self._settle(i, "border")
         self._cut_along(sheet)
-        holes = self._find_holes(sheet)
+        holes = self._find_holes(sheet, left_out)
         self._leave_out_far(sheet, holes)
         self._settle_rest(sheet, holes)
         creases, said = self._creases()
@@ -164,12 +166,12 @@ class _Sheet:
 
     # ---- holes
 
-    def _find_holes(self, sheet: Ring) -> list[Ring]:
+    def _find_holes(self, sheet: Ring, left_out: Sequence[Ring]) -> list[Ring]:
         roles = (*EDGE_ROLES, Role.DARK) if self._marked else tuple(EDGE_ROLES)
         inside = sheet.polygon.buffer(-self._tolerance)
         shapely.prepare(inside)
         curves = self._all
-        holes: list[Ring] = []
+        holes = list(left_out)
         # Closed strokes first: a line that ends at a hole must not make the hole a part of something else.
         for closed in (True, False):
             candidates = [

@@ -66,7 +66,7 @@ class Lines:
     """All that a reader finds in a file. Drawing units, y up.
 
     strokes  in the file's order
-    filled   (P,2) closed outlines of shapes that are filled and not stroked
+    filled   of each shape that is filled and not stroked, its closed outlines (P,2)
     page     x and y minimum, x and y maximum of the page, None when the file has none
     unit_mm  millimetres in one unit, None when the file does not say
     notes    what was decided on the way
@@ -74,7 +74,7 @@ class Lines:
     """
 
     strokes: tuple[Stroke, ...]
-    filled: tuple[FloatArray, ...]
+    filled: tuple[tuple[FloatArray, ...], ...]
     page: tuple[float, float, float, float] | None
     unit_mm: float | None
     notes: tuple[str, ...]

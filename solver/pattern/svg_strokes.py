@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
+import numpy as np
+import shapely
+
+from ..arrays import FloatArray
 from ..errors import PatternError
 from .joining import join_strokes
 from .meaning import Evidence, classify_all
+from .same_line import without_copies
 from .segments import MAX_POINTS, Curve, bounds, sample_all
 from .sheets import MAX_STROKES
-from .stroke import Lines, Stroke
+from .stroke import Decision, Lines, Role, Stroke
 from .svg_walk import Drawing, Drawn
 from .unstroked import why_no_line
 
@@ -27,19 +34,40 @@ def lines_of(drawing: Drawing) -> Lines:
     if not size > 0.0:
         raise PatternError("the drawing has no size: all its lines are one point", notes=drawing.notes)
     decisions = dict(zip(stroked, classify_all([_evidence(shape) for shape in stroked]), strict=True))
-    strokes = [
-        Stroke(curve, decisions[shape], name, shape.opacity) for shape, curve, name in _curves(stroked, size)
-    ]
+    curves = list(_curves(stroked, size))
+    strokes = [Stroke(curve, decisions[shape], name, shape.opacity) for shape, curve, name in curves]
+    for k in _inner(curves):
+        if strokes[k].decision.role is Role.DARK:
+            decision = Decision(Role.HOLE, "left out of a filled shape", strokes[k].decision.detail)
+            strokes[k] = replace(strokes[k], decision=decision)
     if len(strokes) > MAX_STROKES:
         raise PatternError(f"the drawing has more than {MAX_STROKES:,} strokes", notes=drawing.notes)
     fills = [shape for shape in drawing.shapes if shape.stroke is None and shape.filled]
-    filled = tuple(curve.points for _, curve, _ in _curves(fills, size) if curve.closed)
-    joined, notes = join_strokes(strokes, size)
-    return Lines(tuple(joined), filled, drawing.page, drawing.unit_mm, (*notes, *drawing.notes))
+    outlines: dict[Drawn, list[FloatArray]] = defaultdict(list)
+    for shape, curve, _ in _curves(fills, size):
+        if len(curve.points) > 2:
+            outlines[shape].append(curve.points)
+    filled = tuple(tuple(rings) for rings in outlines.values())
+    single, twice = without_copies(strokes)
+    joined, notes = join_strokes(single, size)
+    return Lines(tuple(joined), filled, drawing.page, drawing.unit_mm, (*twice, *notes, *drawing.notes))
 
 
 def _evidence(shape: Drawn) -> Evidence:
     return Evidence(shape.stroke, shape.dashes, shape.words)
+
+
+def _inner(curves: Sequence[tuple[Drawn, Curve, str]]) -> Iterator[int]:
+    """Which closed curves lie inside another one of the same filled shape, and so are not painted."""
+    closed: dict[Drawn, list[int]] = defaultdict(list)
+    for k, (shape, curve, _) in enumerate(curves):
+        if shape.filled and curve.closed:
+            closed[shape].append(k)
+    for members in closed.values():
+        rings = shapely.polygons([shapely.linearrings(curves[k][1].points) for k in members])
+        inner, _ = shapely.STRtree(rings).query(rings, predicate="within")
+        # Each is within itself.
+        yield from (members[k] for k in np.flatnonzero(np.bincount(inner, minlength=len(members)) > 1))
 
 
 def _curves(shapes: Sequence[Drawn], size: float) -> Iterator[tuple[Drawn, Curve, str]]:

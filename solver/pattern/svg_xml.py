@@ -160,6 +160,8 @@ def _attributes(attributes: dict[str, str]) -> dict[str, str]:
             kept.setdefault("href", value)
         elif namespace == INKSCAPE_NAMESPACE and local in ("label", "groupmode"):
             kept["inkscape:" + local] = value
+        elif local == "layername":  # LibreCAD's own
+            kept.setdefault("data-layer", value)
     # SVG 2: a plain href wins over xlink:href, in whatever order they come.
     if "href" in attributes:
         kept["href"] = attributes["href"]

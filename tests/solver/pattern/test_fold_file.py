@@ -467,6 +467,32 @@ def test_a_folded_form_with_a_part_on_another_is_none() -> None:
         read(content)
 
 
+def test_a_corner_that_is_folded_in_is_no_crease_pattern() -> None:
+    """No edge of it crosses another one, and the flap lies wholly on the face that it belongs to."""
+    points = [[0, 0], [4, 0], [4, 4], [2, 4], [0, 2], [1.2, 2.8]]
+    content = {
+        "frame_classes": ["foldedForm"],
+        "vertices_coords": points,
+        "edges_vertices": [[0, 1], [1, 2], [2, 3], [3, 4], [4, 0], [3, 5], [5, 4]],
+        "edges_assignment": [*"BBBVBBB"],
+        "faces_vertices": [[0, 1, 2, 3, 4], [4, 3, 5]],
+    }
+    with pytest.raises(PatternError, match="only a folded form"):
+        read(content)
+
+
+def test_a_face_amid_another_one_lies_open() -> None:
+    points = [[0, 0], [4, 0], [4, 4], [0, 4], [1, 1], [3, 1], [2, 3]]
+    content = {
+        "frame_classes": ["foldedForm"],
+        "vertices_coords": points,
+        "edges_vertices": [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 4]],
+        "edges_assignment": [*"BBBBMMM"],
+        "faces_vertices": [[0, 1, 2, 3], [4, 5, 6]],
+    }
+    assert letters(read(content)) == "M"
+
+
 def test_an_edge_that_is_mountain_and_valley_is_unassigned() -> None:
     edges = [*CROSS_BORDER, *CROSS_INNER, CROSS_INNER[0]]
     pattern = read(cross(edges_vertices=edges, edges_assignment=[*"BBBBBBBB", *"VVMM", "M"]))
