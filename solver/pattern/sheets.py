@@ -28,7 +28,7 @@ _SHARE_FRAMED = 0.99
 #: A stroke that runs along the border for this share of the drawing's side is cut there.
 _ALONG = 0.01
 #: Strokes (subpaths) and holes of one drawing.
-MAX_STROKES = 50_000
+MAX_STROKES = 30_000
 MAX_HOLES = 1_000
 
 _LETTERS = {Role.MOUNTAIN: "M", Role.VALLEY: "V"}

@@ -63,7 +63,7 @@ _MAX_DATA = 20
 _MAX_DATA_LENGTH = 100
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Drawn:
     """One drawn shape.
 
@@ -117,7 +117,7 @@ _IDENTITY: FloatArray = np.eye(3)
 _MOVING = frozenset({"transform", "translate", "rotate", "scale"})
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class _State:
     """What an element hands down to its children."""
 
@@ -182,7 +182,9 @@ class _Walk:
                 points = np.vstack([s.hull() for shape in shapes for s in shape.subpaths])
                 middle = float(points[:, 1].min() + points[:, 1].max())
             flip = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, middle], [0.0, 0.0, 1.0]])
-            shapes = [replace(s, subpaths=tuple(p.transformed(flip) for p in s.subpaths)) for s in shapes]
+            # One by one, so that the shapes are in memory once.
+            for k, shape in enumerate(shapes):
+                shapes[k] = replace(shape, subpaths=tuple(p.transformed(flip) for p in shape.subpaths))
         if viewport.stretch != 1.0:
             self._notes.append(
                 f"the drawing is shown stretched by {viewport.stretch:.6g} in y, and is read as it is shown"
