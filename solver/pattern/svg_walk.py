@@ -333,16 +333,25 @@ class _Walk:
                 return
             # The box is that of what is drawn, and so it is drawn first.
             draw(node, inner)
-            drawn = self._shapes[first:]
-            if drawn and abs(np.linalg.det(state.matrix)) > 0.0:
-                back = np.linalg.inv(state.matrix)
-                x0, y0, x1, y1 = exact_box(p.transformed(back) for shape in drawn for p in shape.subpaths)
-                transform = self._transform(node, inner, (x0, y0, x1 - x0, y1 - y0))
-                if transform is not None:
-                    change = _joined(_joined(state.matrix, transform), back)
-                    self._shapes[first:] = [_moved(shape, change) for shape in drawn]
+            if drawn := self._shapes[first:]:
+                self._shapes[first:] = self._moved_in_their_box(node, inner, drawn)
         except SvgValueError as problem:
             raise PatternError(str(problem), element=str(node)) from problem
+
+    def _moved_in_their_box(self, node: Node, state: _State, drawn: list[Drawn]) -> list[Drawn]:
+        """What ``node`` has drawn, after its transforms about the box of it. Raises SvgValueError."""
+        outer = state.matrix
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                back = np.linalg.inv(outer)
+                x0, y0, x1, y1 = exact_box(p.transformed(back) for shape in drawn for p in shape.subpaths)
+        except np.linalg.LinAlgError as error:
+            raise SvgValueError("it has no box, since it is flattened or too large") from error
+        transform = self._transform(node, state, (x0, y0, x1 - x0, y1 - y0))
+        if transform is None:
+            return drawn
+        change = _joined(_joined(outer, transform), back)
+        return [_moved(shape, change) for shape in drawn]
 
     def _look(self, node: Node, parent: Computed) -> Computed:
         return self._styler.compute(self._sheet.style(node), parent)
