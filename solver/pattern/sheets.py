@@ -22,7 +22,7 @@ _ALONG = 0.01
 #: Open strokes that cover this share of an outline together are a hole.
 _COVERED = 0.99
 #: Strokes (subpaths) and holes of one drawing.
-MAX_STROKES = 50_000
+MAX_STROKES = 30_000
 MAX_HOLES = 1_000
 
 _LETTERS = {Role.MOUNTAIN: "M", Role.VALLEY: "V"}

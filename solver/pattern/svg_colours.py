@@ -133,7 +133,8 @@ def _of_function(name: str, inside: str, current: str) -> Colour | None:
     if opacity is None or None in values:
         return None
     numbers = [value for value in values if value is not None]
-    red, green, blue = (_unit(value) for value in _to_srgb(name, numbers))
+    with np.errstate(over="ignore", invalid="ignore"):
+        red, green, blue = (_unit(value) for value in _to_srgb(name, numbers))
     return Colour(red, green, blue, _unit(opacity))
 
 

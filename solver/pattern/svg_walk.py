@@ -55,7 +55,7 @@ DATA_ATTRIBUTES = (
 )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Drawn:
     """One drawn shape.
 
@@ -105,7 +105,7 @@ _IDENTITY: FloatArray = np.eye(3)
 _MOVING = frozenset({"transform", "translate", "rotate", "scale"})
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class _State:
     """What an element hands down to its children."""
 
@@ -168,7 +168,9 @@ class _Walk:
                 points = np.vstack([s.hull() for shape in shapes for s in shape.subpaths])
                 middle = float(points[:, 1].min() + points[:, 1].max())
             flip = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, middle], [0.0, 0.0, 1.0]])
-            shapes = [replace(s, subpaths=tuple(p.transformed(flip) for p in s.subpaths)) for s in shapes]
+            # One by one, so that the shapes are in memory once.
+            for k, shape in enumerate(shapes):
+                shapes[k] = replace(shape, subpaths=tuple(p.transformed(flip) for p in shape.subpaths))
         if viewport.stretch != 1.0:
             self._notes.append(
                 f"the drawing is shown stretched by {viewport.stretch:.6g} in y, and is read as it is shown"
@@ -317,16 +319,25 @@ class _Walk:
                 return
             # The box is that of what is drawn, and so it is drawn first.
             draw(node, inner)
-            drawn = self._shapes[first:]
-            if drawn and abs(np.linalg.det(state.matrix)) > 0.0:
-                back = np.linalg.inv(state.matrix)
-                x0, y0, x1, y1 = exact_box(p.transformed(back) for shape in drawn for p in shape.subpaths)
-                transform = self._transform(node, inner, (x0, y0, x1 - x0, y1 - y0))
-                if transform is not None:
-                    change = _joined(_joined(state.matrix, transform), back)
-                    self._shapes[first:] = [_moved(shape, change) for shape in drawn]
+            if drawn := self._shapes[first:]:
+                self._shapes[first:] = self._moved_in_their_box(node, inner, drawn)
         except SvgValueError as problem:
             raise PatternError(str(problem), element=str(node)) from problem
+
+    def _moved_in_their_box(self, node: Node, state: _State, drawn: list[Drawn]) -> list[Drawn]:
+        """What ``node`` has drawn, after its transforms about the box of it. Raises SvgValueError."""
+        outer = state.matrix
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                back = np.linalg.inv(outer)
+                x0, y0, x1, y1 = exact_box(p.transformed(back) for shape in drawn for p in shape.subpaths)
+        except np.linalg.LinAlgError as error:
+            raise SvgValueError("it has no box, since it is flattened or too large") from error
+        transform = self._transform(node, state, (x0, y0, x1 - x0, y1 - y0))
+        if transform is None:
+            return drawn
+        change = _joined(_joined(outer, transform), back)
+        return [_moved(shape, change) for shape in drawn]
 
     def _look(self, node: Node, parent: Computed) -> Computed:
         return self._styler.compute(self._sheet.style(node), parent)

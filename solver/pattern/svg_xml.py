@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import cached_property
 from xml.parsers import expat
 
 from ..errors import ReadError
@@ -27,7 +26,7 @@ MAX_DEPTH = 100
 MAX_CLASSES = 50
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, slots=True)
 class Node:
     """One XML element.
 
@@ -35,6 +34,7 @@ class Node:
     attributes  local names; ``href`` whether plain or xlink, ``inkscape:label`` for Inkscape's layer name
     number      place in the file among elements of the same tag, from 1
     text        character data, collected for <style> only
+    classes     its class names; no more than a drawing could mean
     """
 
     tag: str
@@ -43,15 +43,15 @@ class Node:
     number: int
     children: list[Node] = field(default_factory=list)
     text: str = ""
+    classes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if names := self.attributes.get("class"):
+            self.classes = tuple(names.split(None, MAX_CLASSES)[:MAX_CLASSES])
 
     def __str__(self) -> str:
         identity = self.attributes.get("id", "")[:40]
         return f"<{self.tag}> {self.number}" + (f" (id {identity!r})" if identity else "")
-
-    @cached_property
-    def classes(self) -> tuple[str, ...]:
-        """Its class names; no more than a drawing could mean."""
-        return tuple(self.attributes.get("class", "").split(None, MAX_CLASSES)[:MAX_CLASSES])
 
     def walk(self) -> Iterator[Node]:
         """This node and everything below it, in the file's order. Not recursive."""
