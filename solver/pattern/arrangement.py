@@ -118,22 +118,27 @@ def arrange(
     lines   (P,2) arrays, one a crease; closed ones repeat their first point
     labels  names for notes and errors, one a crease
     locate  turns (N,2) places into the user's coordinates, for notes
-    Raises PatternError when no crease is left on the sheet.
+    Raises PatternError when creases run along each other all over the sheet. Without a crease that is left on it
+    the sheet is all there is.
     """
     tolerance, node = snap_tolerance(sheet), NODE_TOLERANCE * _longer_side(sheet)
     notes: list[str] = []
     parts = _trim(sheet, lines, labels, tolerance, notes)
     if not parts:
-        raise PatternError("no crease lies on the sheet, so there is nothing to fold", element="creases")
+        return _blank(sheet, notes)
     parts = _snap_ends(sheet, parts, labels, tolerance, notes)
     segments, owner, points = _node(sheet, parts, node)
     segments, owner, points = _merge_vertices(segments, owner, points, tolerance)
     segments, owner = _drop_whiskers(segments, owner, points, tolerance)
     segments, owner = _drop_slivers(segments, owner, points, tolerance, labels, notes, locate)
     if not (owner >= 0).any():
-        raise PatternError("no crease is left inside the sheet: nothing to fold", element="creases")
+        return _blank(sheet, notes)
     chains, vertices, kinds = _chains(segments, owner, points, lines)
     return Arrangement(sheet, chains, vertices, kinds, tuple(notes))
+
+
+def _blank(sheet: Polygon, notes: list[str]) -> Arrangement:
+    return Arrangement(sheet, (), np.empty((0, 2)), (), tuple(notes))
 
 
 def _trim(
