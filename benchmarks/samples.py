@@ -65,14 +65,18 @@ class Row:
         )  # fmt: skip
 
 
+#: Quads along the longer side of a sample: one number for all, so that figures of one day compare with another's.
+RESOLUTION = 32
+
+
 def sample_names() -> list[str]:
     """Names of all sample patterns, in alphabetical order."""
     return sorted(path.stem for path in FOLDER.glob("*.svg"))
 
 
 def description(name: str, way: str, resolution: int | None = None) -> solver.FoldDescription:
-    """How a sample is folded: way "drive" or "handles"; resolution None for the default one."""
-    resolution = resolution or solver.FoldDescription().resolution
+    """How a sample is folded: way "drive" or "handles"; resolution None for RESOLUTION."""
+    resolution = resolution or RESOLUTION
     if way == "drive":
         return solver.FoldDescription(resolution=resolution)
     handles = solver.read_handles(FOLDER / f"{name}.handles.json")

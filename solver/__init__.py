@@ -32,6 +32,7 @@ from .measurement import Measurement, measure
 from .net.build import build_net
 from .net.piecewise_dog import PiecewiseDog
 from .net.render_map import RenderMap
+from .net.resolution import Resolution, choose_resolution
 from .pattern.crease_pattern import Crease, CreasePattern
 from .pattern.read_options import ReadOptions
 from .pattern.reading import read_pattern, read_patterns
@@ -66,6 +67,7 @@ __all__ = [
     "ReadError",
     "ReadOptions",
     "RenderMap",
+    "Resolution",
     "RulingKind",
     "Rulings",
     "SheetMesh",
@@ -75,6 +77,7 @@ __all__ = [
     "Verification",
     "Weights",
     "build_net",
+    "choose_resolution",
     "fold",
     "gauss_image",
     "measure",

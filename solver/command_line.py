@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, TextIO
 
-from .description import FoldDescription, read_description, read_handles
+from .description import AUTO, FoldDescription, read_description, read_handles
 from .errors import CurvefoldError
 from .files.mesh_reading import read_mesh
 from .files.results import FOLD_NAME, write_results
@@ -39,8 +39,13 @@ def add_fold_arguments(parser: argparse.ArgumentParser) -> None:
         "'description'; the other options go before it",
     )  # fmt: skip
     parser.add_argument(
-        "--resolution", type=int, default=None, metavar="N",
-        help=f"quads along the sheet's longer side (default {default.resolution})",
+        "--resolution", type=_resolution, default=None, metavar="N",
+        help="quads along the sheet's longer side, or auto for as many as the drawing needs "
+        f"(default {default.resolution})",
+    )  # fmt: skip
+    parser.add_argument(
+        "--vertices", type=int, default=None, metavar="N",
+        help=f"vertices that an automatic resolution may use (default {default.max_vertices})",
     )  # fmt: skip
     parser.add_argument(
         "--handles", metavar="FILE.json",
@@ -60,6 +65,15 @@ def add_fold_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def _resolution(text: str) -> int | str:
+    if text == AUTO:
+        return AUTO
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number, and not {AUTO!r}") from None
+
+
 def description_of(args: argparse.Namespace) -> FoldDescription:
     """What the arguments ask for. Raises CurvefoldError on a bad file or number."""
     told = read_description(args.description) if args.description else FoldDescription()
@@ -68,9 +82,9 @@ def description_of(args: argparse.Namespace) -> FoldDescription:
         given["handles"] = read_handles(args.handles)
         if not args.description:
             given["angle"] = None
-    for name in ("resolution", "angle", "assignments"):
-        if getattr(args, name) is not None:
-            given[name] = getattr(args, name)
+    for option, name in (("resolution",) * 2, ("vertices", "max_vertices"), ("angle",) * 2, ("assignments",) * 2):
+        if getattr(args, option) is not None:
+            given[name] = getattr(args, option)
     return replace(told, **given)
 
 

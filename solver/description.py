@@ -16,6 +16,11 @@ from .errors import DescriptionError, HandleError
 FORMAT_VERSION = 1
 #: Quads along the longer side that a net may have, least and most.
 RESOLUTIONS = (4, 1000)
+#: The resolution that follows the drawing, and the vertices that it may use: a net of so many is folded in a minute
+#: or two, and still follows a hand in Blender.
+AUTO, AUTO_VERTICES = "auto", 6000
+#: Vertices that the resolution may be told to use, least and most.
+VERTEX_BUDGETS = (100, 100_000)
 #: More iterations than any fold needs.
 MAX_ITERATIONS = 1_000_000
 #: No weight may be larger: with this one for any of them an arc at 50 degrees comes to rest, with 1e30 for isometry
@@ -86,27 +91,34 @@ class Weights:
 
 @dataclass(frozen=True)
 class FoldDescription:
-    """resolution: quads along the longer side. angle: degrees every crease is driven to, None for no drive.
+    """resolution: quads along the longer side, "auto" for as many as the drawing needs.
 
-    handles; assignments: "free" (the fold finds its own) or "bind" (those of the drawing hold); weights;
-    max_iterations: where a fold that does not settle ends; controls: all else that is asked (``controls/``).
+    angle: degrees every crease is driven to, None for no drive; handles; assignments: "free" (the fold finds its
+    own) or "bind" (those of the drawing hold); weights; max_iterations: where a fold that does not settle ends;
+    controls: all else that is asked (``controls/``); max_vertices: how many "auto" may use.
     """
 
-    resolution: int = 32
+    resolution: int | str = AUTO
     angle: float | None = 60.0
     handles: tuple[Handle, ...] = ()
     assignments: str = "free"
     weights: Weights = field(default_factory=Weights)
     max_iterations: int = 1500
     controls: tuple[Control, ...] = ()
+    max_vertices: int = AUTO_VERTICES
 
     def __post_init__(self) -> None:
         if self.angle is not None and not (is_number(self.angle) and 0 <= self.angle <= 180):
             raise DescriptionError("the fold angle must lie between 0 and 180 degrees", element="angle")
-        for name, least, most in (("resolution", *RESOLUTIONS), ("max_iterations", 1, MAX_ITERATIONS)):
+        for name, least, most, word in (
+            ("resolution", *RESOLUTIONS, AUTO),
+            ("max_iterations", 1, MAX_ITERATIONS, None),
+            ("max_vertices", *VERTEX_BUDGETS, None),
+        ):
             value = getattr(self, name)
-            if type(value) is not int or not least <= value <= most:
-                raise DescriptionError(f"must be a whole number from {least} to {most}", element=name)
+            if value != word and (type(value) is not int or not least <= value <= most):
+                other = "" if word is None else f", or {word!r}"
+                raise DescriptionError(f"must be a whole number from {least} to {most}{other}", element=name)
         if self.assignments not in ("free", "bind"):
             raise DescriptionError("assignments must be 'free' or 'bind'", element="assignments")
         object.__setattr__(self, "handles", tuple(self.handles))

@@ -83,7 +83,7 @@ class AngleDrive(Pull):
         return [fold_angle(self._net, self._now[self._crease], weight)]
 
     def asks(self, x: FloatArray) -> bool:
-        return bool(self.angle) and self._weight > 0 and bool((self._amount > 0).any())
+        return bool(self.angle) and self._weight > 0 and bool((self._amount[self._crease] > 0).any())
 
     def begin(self, x: FloatArray) -> None:
         if self.angle is not None:

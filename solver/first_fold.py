@@ -37,6 +37,8 @@ _VERTEX_COST = 10.0
 _MAX_ARMS, _STRAIGHT = 10, np.radians(3.0)
 #: Weights of the offset's linear problem: kept folds and closed gaps against bending, and a bound on the rest.
 _FOLD_WEIGHT, _GAP_WEIGHT, _REST_WEIGHT = 1.0, 1e4, 1e-8
+#: Sums over handles below this say nothing about a way to bend.
+_NO_WAY = 1e-9
 #: Crease points coupled at once; longer creases are thinned.
 _MAX_COUPLED = 1500
 
@@ -51,7 +53,7 @@ def choose_sides(net: PiecewiseDog, bound: Mapping[int, int] | None = None) -> I
     arms = _inner_vertices(net)
     given = np.array([(bound or {}).get(int(crease), 0) for crease in net.chain_crease], dtype=np.int64)
     if not given.any():
-        given[0] = 1
+        given[:1] = 1
     free = np.flatnonzero(given == 0)
     if len(free) <= _ENUMERATED:
         codes = np.arange(1 << len(free))
@@ -88,6 +90,28 @@ def first_fold(net: PiecewiseDog, sides: IntArray) -> FloatArray:
         matrix = matrix + weight * (row.T @ diags(term.weight) @ row)
     wish = fold.T @ (_FOLD_WEIGHT * lean * sides[points.chain[chosen]])
     return np.asarray(splu(matrix.tocsc()).solve(wish))
+
+
+def first_bend(net: PiecewiseDog, at: FloatArray, heights: FloatArray, gaps: FloatArray) -> FloatArray:
+    """(V,) normal offsets of a sheet without creases that is bent to a cylinder, by about a radian in all.
+
+    It bends the way in which its handles come nearest to each other, else along its longer side; down at its ends,
+    or up where its handles are raised there more than in the middle.
+    at (H,2) handles on the flat sheet, heights (H,) of their targets over it, gaps (H,H) between targets; net units
+    """
+    centred = net.flat - net.flat.mean(axis=0)
+    way = np.array([1.0, 0.0]) if np.ptp(centred[:, 0]) >= np.ptp(centred[:, 1]) else np.array([0.0, 1.0])
+    steps = at[:, None] - at[None]
+    shrunk = np.maximum(np.hypot(steps[..., 0], steps[..., 1]) - gaps, 0.0)
+    values, ways = np.linalg.eigh(np.einsum("hk,hkc,hkd->cd", shrunk, steps, steps))
+    if values[1] > values[0] + _NO_WAY:
+        way = ways[:, 1]
+    along = centred @ way
+    size = max(float(np.ptp(along)), 1e-300)
+    bow = 0.5 * along**2 / size
+    place = 0.5 * ((at - net.flat.mean(axis=0)) @ way) ** 2 / size
+    up = (place - place.mean()) @ heights > _NO_WAY if len(at) else False
+    return np.asarray(bow if up else -bow)
 
 
 def _couplings(net: PiecewiseDog, count: int) -> FloatArray:

@@ -31,7 +31,6 @@ _REPORT_EVERY = 10
 _FLAT = 1e-6
 #: What creases are called that lie on a side, and how many of them a terminal is told.
 _SIDES, _MOST_SIDES = {"V": "valley", "M": "mountain", "U": "on no side"}, 12
-
 #: Edges farther than this from every handle and joined point are away from them, net units.
 _AWAY = 3.0
 
@@ -42,6 +41,7 @@ class Outcome(Enum):
     """How a fold ended. ``sentence`` is for the user, ``ok`` whether it did what it was asked."""
 
     FOLDED = "folded: every target is reached and every crease point is folded"
+    BENT = "bent: every target is reached, and there is no crease to fold"
     FLAT = "the sheet lies flat: nothing asks it to fold"
     NOT_FOLDED = "a crease is not folded everywhere"
     AGAINST_ASSIGNMENT = "a crease folded against its assignment"
@@ -58,9 +58,11 @@ class Outcome(Enum):
 
     @property
     def ok(self) -> bool:
-        return self is Outcome.FOLDED
+        return self in (Outcome.FOLDED, Outcome.BENT)
 
 
+#: What is said of a sheet without creases that lies flat.
+_BLANK_AND_FLAT = f"{Outcome.FLAT.sentence}, and there is no crease on it"
 #: How a fold that was stuck on its way may end: another way may lead to what was asked.
 _WORTH_ANOTHER_WAY = (Outcome.OUT_OF_REACH, Outcome.NOT_FOLDED, Outcome.STRETCHED, Outcome.UNCERTIFIED)
 
@@ -100,16 +102,11 @@ class FoldResult:
     def summary(self) -> str:
         """A few lines for a terminal."""
         m = self.measurement
-        low, median, high = fold_angle_quantiles(m)
-        sides = [f"{label} {_SIDES[m.side(k)]}" for k, label in enumerate(self.net.crease_labels[:_MOST_SIDES])]
-        more = len(self.net.crease_labels) - len(sides)
         lines = [
             self.detail,
             f"{len(self.net.rest)} vertices, {len(self.net.patch_polygons)} patches, "
             f"{self.iterations} iterations, {self.seconds:.1f} s",
-            f"fold angle {low:.0f}° – {median:.0f}° – {high:.0f}° (10 %, median, 90 %), "
-            f"{m.folded_part:.1%} of the crease points folded",
-            ", ".join([*sides, f"and {more} more"] if more else sides),
+            *(_fold_lines(self.net, m) if len(m.crease) else []),
             f"stretch mean {m.stretch.mean():.1e}, max {m.stretch.max():.1e}; "
             f"DOG residual max {self.last.constraint:.1e}",
         ]
@@ -124,6 +121,7 @@ class FoldResult:
             "sentence": self.detail,
             "drawing": self.pattern.name,
             "description": self.description.to_json(),
+            "resolution": self.net.resolution,
             "vertices": len(self.net.rest),
             "quads": len(self.net.quads),
             "patches": len(self.net.patch_polygons),
@@ -160,6 +158,18 @@ class FoldResult:
         return float(self.measurement.stretch[near > _AWAY].max(initial=0.0))
 
 
+def _fold_lines(net: PiecewiseDog, m: Measurement) -> list[str]:
+    """What a terminal is told of the creases."""
+    low, median, high = fold_angle_quantiles(m)
+    sides = [f"{label} {_SIDES[m.side(k)]}" for k, label in enumerate(net.crease_labels[:_MOST_SIDES])]
+    more = len(net.crease_labels) - len(sides)
+    return [
+        f"fold angle {low:.0f}° – {median:.0f}° – {high:.0f}° (10 %, median, 90 %), "
+        f"{m.folded_part:.1%} of the crease points folded",
+        ", ".join([*sides, f"and {more} more"] if more else sides),
+    ]
+
+
 def fold_angle_quantiles(m: Measurement) -> tuple[float, float, float]:
     """10 %, median and 90 % of the unsigned fold angles, degrees; zeros when none has a meaning."""
     known = m.fold_angle[np.isfinite(m.fold_angle)]
@@ -193,7 +203,7 @@ def fold(
     """
     description = description or FoldDescription()
     begin = time.perf_counter()
-    net = build_net(pattern, description.resolution)
+    net = build_net(pattern, description.resolution, description.max_vertices)
     model = FoldModel(net, weights=description.weights)
     if description.assignments == "bind":
         model.set_assignments([crease.assignment for crease in pattern.creases])
@@ -222,7 +232,8 @@ def come_to_rest(model: FoldModel, description: FoldDescription, progress: Progr
     What another way comes to is kept only if it is all that was asked.
     """
     rest = _rest(model, description, progress, 0)
-    may_help = rest.status in _WORTH_ANOTHER_WAY and description.weights.fold_condition > 0
+    creased = len(model.net.chain_crease) > 0
+    may_help = rest.status in _WORTH_ANOTHER_WAY and description.weights.fold_condition > 0 and creased
     if not (may_help and description.handles) or _too_far_apart(description.handles, model.net):
         return rest
     iterations = rest.iterations
@@ -270,8 +281,9 @@ def _in_words(
         return Outcome.OUT_OF_REACH, "; ".join([*away, stopped] if model.status is Status.RUNNING else away)
     if model.status is Status.RUNNING:
         return Outcome.UNSETTLED, stopped
+    creased = len(net.chain_crease) > 0
     if off_plane(model.positions) < _FLAT * net.frame.unit:
-        return Outcome.FLAT, Outcome.FLAT.sentence
+        return Outcome.FLAT, Outcome.FLAT.sentence if creased else _BLANK_AND_FLAT
     if not m.folded.all():
         labels = ", ".join(net.crease_labels[c] for c in m.not_folded)
         x, y = m.crease_position[np.flatnonzero(~m.folded)[0]]
@@ -290,7 +302,8 @@ def _in_words(
     verification = verify(net, model.positions)
     if not verification.ok:
         return Outcome.UNCERTIFIED, f"{Outcome.UNCERTIFIED.sentence}: {verification.faults[0]}"
-    return Outcome.FOLDED, Outcome.FOLDED.sentence
+    outcome = Outcome.FOLDED if creased else Outcome.BENT
+    return outcome, outcome.sentence
 
 
 def _out_of_reach(handles: tuple[Handle, ...], net: PiecewiseDog, model: FoldModel, report: SqpReport) -> str:

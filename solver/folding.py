@@ -27,7 +27,7 @@ from .description import Handle, Weights
 from .drive import FIRST_ANGLE, MAX_MEAN_STRETCH, AngleDrive, mean_stretch
 from .errors import DescriptionError, NotPositiveDefiniteError
 from .finishing import Finishing, Next
-from .first_fold import choose_sides, first_fold
+from .first_fold import choose_sides, first_bend, first_fold
 from .laid_flat import laid_flat, off_plane
 from .net.piecewise_dog import PiecewiseDog
 from .objectives.bending import bending
@@ -334,14 +334,20 @@ class FoldModel:
 
     def _first_folded(self, flat: FloatArray) -> FloatArray:
         """A flat sheet lifted a little, so that it has a side to fold to everywhere."""
-        sides = {crease: side for pull in self._pulls() for crease, side in pull.sides().items()}
-        offset = first_fold(self.net, choose_sides(self.net, sides))
         quad = flat[self.net.quads[0]]
         normal = np.cross(quad[2] - quad[0], quad[3] - quad[1])
+        normal /= np.linalg.norm(normal)
+        if len(self.net.chain_crease):
+            sides = {crease: side for pull in self._pulls() for crease, side in pull.sides().items()}
+            offset = first_fold(self.net, choose_sides(self.net, sides))
+        else:
+            at, targets = self._handles.anchors()
+            gaps = np.linalg.norm(targets[:, None] - targets[None], axis=2)
+            offset = first_bend(self.net, at, (targets - flat.mean(axis=0)) @ normal, gaps)
         # Many folds in a row would lift the far end of the sheet out of the range of the linear offset.
         largest = max(float(np.abs(offset).max()), 1e-300)
         lift = offset * min(float(np.radians(FIRST_ANGLE)), _FIRST_LIFT / largest)
-        return np.asarray(flat + lift[:, None] * (normal / np.linalg.norm(normal)))
+        return np.asarray(flat + lift[:, None] * normal)
 
     @staticmethod
     def _replace(problem: Problem, pull: Pull) -> None:
@@ -436,12 +442,13 @@ class FoldModel:
         self._wake()
 
     def _lies_down(self) -> bool:
-        """Bring a sheet back to flat that its handles ask to be nothing else; whether that was done.
+        """Bring back a sheet that its handles ask to be flat, or a blank one that nothing holds; whether it was.
 
         Flat is its least energy then, but the energy is of fourth order there and steps only creep towards it;
         a flap behind a crease near the border costs next to nothing.
         """
-        if not len(self._handles) or self._at_work or self._steps_down >= _MOST_STEPS_DOWN:
+        blank = not len(self.net.chain_crease)
+        if not (len(self._handles) or blank) or self._at_work or self._steps_down >= _MOST_STEPS_DOWN:
             return False
         x = self._state.x
         lying = laid_flat(self.net.flat, x, *self._handles.anchors())

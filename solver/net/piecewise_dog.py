@@ -46,6 +46,7 @@ class PiecewiseDog:
     neighbours (V,4) in +x, +y, -x, -y or -1
     stitches, crease_points, render_map; patch_polygons: flat patches, drawing units, index = patch
     chain_crease: crease index of each chain; notes: what was repaired or merged, one sentence each
+    resolution: quads along the sheet's longer side that were used
     """
 
     rest: FloatArray
@@ -70,6 +71,7 @@ class PiecewiseDog:
     topology: Topology
     sheet: Polygon
     overlay: Overlay
+    resolution: int
 
     def locate(self, at: tuple[float, float]) -> tuple[IntArray, FloatArray]:
         """Vertices (4,) and bilinear weights (4,) of a point of the flat sheet (drawing units).

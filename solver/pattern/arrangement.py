@@ -16,13 +16,20 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 from shapely import LineString, MultiPolygon, Point, Polygon
 
-from ..arrays import FloatArray, IntArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..errors import PatternError
 from .curves import CORNER, drop_repeats
 from .places import Lines, line_strings, places_along
 
 #: Ends nearer than this to the border, to a crease or to each other are joined; part of the longer side.
 SNAP_TOLERANCE = 2e-3
+#: An end this near to what it points at is meant to reach it, cells: paper beyond it would be narrower than the net
+#: can show. A crease's ends are extended by a part of its length, so that small features stay as they are, and to
+#: its own other end by less.
+END_REACH, _PART_EXTENDED, _PART_CLOSED = 0.25, 0.25, 0.1
+#: An end points along the chord of its last piece of this length, cells, at what lies so many times as far along
+#: that direction as it may be away, and to an end or a place whose direction differs by less than these, radians.
+_HEADING, _ALONG_HEADING, _TO_AN_END, _TO_A_PLACE = 0.25, 2.0, np.radians(60.0), np.radians(30.0)
 #: Nodes nearer than this are one node; part of the longer side. Far above rounding, far below any drawing.
 NODE_TOLERANCE = 1e-12
 #: So many pairs of a line and an end are snapped one by one.
@@ -106,27 +113,32 @@ def arrange(
     labels: list[str],
     locate: Callable[[FloatArray], FloatArray] = lambda points: points,
 ) -> Arrangement:
-    """Cut crease polylines at their crossings and mend near misses.
+    """Cut crease polylines at their crossings and mend near misses. Lengths are in cells of the net.
 
     lines   (P,2) arrays, one a crease; closed ones repeat their first point
     labels  names for notes and errors, one a crease
     locate  turns (N,2) places into the user's coordinates, for notes
-    Raises PatternError when no crease is left on the sheet.
+    Raises PatternError when creases run along each other all over the sheet. Without a crease that is left on it
+    the sheet is all there is.
     """
     tolerance, node = snap_tolerance(sheet), NODE_TOLERANCE * _longer_side(sheet)
     notes: list[str] = []
     parts = _trim(sheet, lines, labels, tolerance, notes)
     if not parts:
-        raise PatternError("no crease lies on the sheet, so there is nothing to fold", element="creases")
+        return _blank(sheet, notes)
     parts = _snap_ends(sheet, parts, labels, tolerance, notes)
     segments, owner, points = _node(sheet, parts, node)
     segments, owner, points = _merge_vertices(segments, owner, points, tolerance)
     segments, owner = _drop_whiskers(segments, owner, points, tolerance)
     segments, owner = _drop_slivers(segments, owner, points, tolerance, labels, notes, locate)
     if not (owner >= 0).any():
-        raise PatternError("no crease is left inside the sheet: nothing to fold", element="creases")
+        return _blank(sheet, notes)
     chains, vertices, kinds = _chains(segments, owner, points, lines)
     return Arrangement(sheet, chains, vertices, kinds, tuple(notes))
+
+
+def _blank(sheet: Polygon, notes: list[str]) -> Arrangement:
+    return Arrangement(sheet, (), np.empty((0, 2)), (), tuple(notes))
 
 
 def _trim(
@@ -236,6 +248,7 @@ def _snap_ends(
         if distances[best] <= tolerance:
             target[n] = _nearest_on(candidates[best], place[None])[0]
             moved[n] = True
+    _extend(border, [points for points, _ in parts], ends, tree, lines, target, moved, tolerance)
     joined: list[str] = []
     for n, (k, side, place) in enumerate(ends):
         gap = float(np.hypot(*(target[n] - place)))
@@ -248,6 +261,125 @@ def _snap_ends(
     if joined:
         notes.append(f"ends that missed by a little were joined: {_listed(joined)}")
     return [(drop_repeats(points), crease) for points, (_, crease) in zip(result, parts, strict=True)]
+
+
+def _extend(
+    border: shapely.Geometry,
+    rows: list[FloatArray],
+    ends: list[tuple[int, int, FloatArray]],
+    tree: shapely.STRtree,
+    lines: Lines,
+    target: FloatArray,
+    moved: BoolArray,
+    tolerance: float,
+) -> None:
+    """Ends (part, side, place) that have not moved yet go on to what they point at; in place of target and moved.
+
+    Those that point at each other meet in the middle. Others go straight on to the first line in their way, or to
+    the nearest place where that lies almost straight ahead. What lies sideways is not meant.
+    """
+    if tolerance >= END_REACH:
+        return
+    free = np.flatnonzero(~moved)
+    places = np.array([ends[n][2] for n in free]).reshape(-1, 2)
+    headings = np.array([_heading(rows[ends[n][0]], ends[n][1]) for n in free]).reshape(-1, 2)
+    lengths = np.array([_length(rows[ends[n][0]]) for n in free])
+    part = np.array([ends[n][0] for n in free], dtype=np.int64)
+    reach = np.minimum(END_REACH, _PART_EXTENDED * lengths)
+    for members in _meeting(border, places, headings, part, lengths, reach, tree, lines):
+        target[free[members]] = places[members].mean(axis=0)
+        moved[free[members]] = True
+    for m in np.flatnonzero(~moved[free]).tolist():
+        if reach[m] <= tolerance:
+            continue
+        far = _ALONG_HEADING * reach[m]
+        around = np.sort(tree.query(shapely.Point(places[m]).buffer(far)))
+        own = _far_part(rows[part[m]], ends[free[m]][1], 4 * END_REACH)
+        others = [border, *(lines[j] for j in around if j != part[m]), *([own] if own is not None else [])]
+        place = _ahead(places[m], headings[m], reach[m], np.array(others, dtype=object))
+        if place is not None:
+            target[free[m]], moved[free[m]] = place, True
+
+
+def _meeting(
+    border: shapely.Geometry,
+    places: FloatArray,
+    headings: FloatArray,
+    part: IntArray,
+    lengths: FloatArray,
+    reach: FloatArray,
+    tree: shapely.STRtree,
+    lines: Lines,
+) -> list[IntArray]:
+    """Groups of ends that point at each other with nothing between them: all at once, or two by two."""
+    if len(places) < 2:
+        return []
+    pairs = cKDTree(places).query_pairs(END_REACH, output_type="ndarray")
+    a, b = pairs.T
+    gap = places[b] - places[a]
+    distance = np.hypot(*gap.T)
+    most = np.minimum(reach[a], reach[b])
+    most = np.where(part[a] == part[b], np.minimum(most, _PART_CLOSED * lengths[a]), most)
+    facing = np.minimum(_dots(gap, headings[a]), -_dots(gap, headings[b])) > np.cos(_TO_AN_END) * distance
+    meant = np.flatnonzero(facing & (distance <= most))
+    clear = []
+    for k in meant[np.lexsort((b[meant], a[meant], distance[meant]))].tolist():
+        between = LineString(places[pairs[k]])
+        crossed = np.setdiff1d(tree.query(between, predicate="intersects"), part[pairs[k]])
+        if not len(crossed) and not between.intersects(border):
+            clear.append(k)
+    pairs = pairs[clear]
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(places),) * 2)
+    label = connected_components(graph, directed=False)[1]
+    result: list[IntArray] = []
+    for one in np.unique(label[pairs[:, 0]]):
+        members = np.flatnonzero(label == one)
+        gap = places[members].mean(axis=0) - places[members]
+        distance = np.hypot(*gap.T)
+        at_once = (distance <= reach[members]) & (_dots(gap, headings[members]) > np.cos(_TO_AN_END) * distance)
+        if at_once.all():
+            result.append(members)
+            continue
+        left = set(members.tolist())
+        for pair in pairs[label[pairs[:, 0]] == one]:
+            if left >= set(pair.tolist()):
+                left -= set(pair.tolist())
+                result.append(pair)
+    return result
+
+
+def _ahead(place: FloatArray, heading: FloatArray, reach: float, others: Lines) -> FloatArray | None:
+    """The point (2,) that an end goes on to, if it points at one of the others within its reach."""
+    near = shapely.distance(shapely.Point(place), others) <= reach
+    if not near.any():
+        return None
+    ray = LineString([place, place + _ALONG_HEADING * reach * heading])
+    hits, line = shapely.get_coordinates(shapely.intersection(ray, others), return_index=True)
+    if len(hits):
+        first = np.argmin(np.hypot(*(hits - place).T))
+        return np.asarray(hits[first]) if near[line[first]] else None
+    nearest = np.concatenate([_nearest_on(line, place[None]) for line in others[near]])
+    gap = nearest - place
+    straight = gap @ heading >= np.cos(_TO_A_PLACE) * np.hypot(*gap.T)
+    nearest, gap = nearest[straight], gap[straight]
+    return np.asarray(nearest[np.argmin(np.hypot(*gap.T))]) if len(nearest) else None
+
+
+def _heading(points: FloatArray, side: int) -> FloatArray:
+    """The direction (2,) in which a polyline would go on beyond its end ``side``."""
+    row = points if side == 0 else points[::-1]
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(row, axis=0).T))])
+    back = LineString(row).interpolate(min(_HEADING, 0.5 * float(along[-1])))
+    step = row[0] - np.array([back.x, back.y])
+    return np.asarray(step / max(float(np.hypot(*step)), 1e-300))
+
+
+def _length(points: FloatArray) -> float:
+    return float(np.hypot(*np.diff(points, axis=0).T).sum())
+
+
+def _dots(first: FloatArray, second: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("nc,nc->n", first, second))
 
 
 def _nearest_on(line: shapely.Geometry, places: FloatArray) -> FloatArray:

@@ -194,17 +194,6 @@ def test_a_drawing_that_is_none_is_refused_by_its_element(name: str) -> None:
 
 
 NETS: dict[str, tuple[solver.CreasePattern, int, str]] = {
-    "no crease": (solver.CreasePattern(BOX), 8, "crease"),
-    "a crease off the sheet": (
-        solver.CreasePattern(BOX, creases=[solver.Crease([(3, 3), (4, 4)])]),
-        8,
-        "crease",
-    ),
-    "a crease along the border": (
-        solver.CreasePattern(BOX, creases=[solver.Crease([(0, 0), (1, 0)])]),
-        8,
-        "crease",
-    ),
     "a border that crosses itself": (
         solver.CreasePattern([(0, 0), (1, 1), (1, 0), (0, 0.5)], creases=[solver.Crease(BOW)]),
         8,

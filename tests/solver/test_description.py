@@ -17,12 +17,13 @@ handle = st.builds(solver.Handle, st.tuples(number, number), st.tuples(number, n
 weight = st.floats(0, 1e9)
 description = st.builds(
     solver.FoldDescription,
-    resolution=st.integers(4, 200),
+    resolution=st.just("auto") | st.integers(4, 200),
     angle=st.none() | st.floats(0, 180),
     handles=st.lists(handle, max_size=4).map(tuple),
     assignments=st.sampled_from(["free", "bind"]),
     weights=st.builds(solver.Weights, weight, weight, weight, weight, weight, weight),
     max_iterations=st.integers(1, 10_000),
+    max_vertices=st.integers(100, 100_000),
 )
 
 
@@ -106,7 +107,12 @@ def test_a_missing_or_binary_handle_file_is_refused(tmp_path: Path) -> None:
         (None, "object"),
         ({"resolution": "many"}, "resolution"),
         ({"resolution": 7.5}, "resolution"),
+        ({"resolution": True}, "resolution"),
+        ({"resolution": ["auto"]}, "resolution"),
         ({"max_iterations": "all"}, "max_iterations"),
+        ({"max_vertices": "auto"}, "max_vertices"),
+        ({"max_vertices": 99}, "max_vertices"),
+        ({"max_vertices": 1e4}, "max_vertices"),
     ],
 )
 def test_a_bad_description_is_refused_by_its_setting(data: Any, words: str) -> None:

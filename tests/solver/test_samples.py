@@ -25,7 +25,8 @@ SAMPLES = sorted(path.stem for path in FOLDER.glob("*.svg"))
 RESOLUTION = 24
 #: Degrees that the median fold angle exceeds, and the largest residual of the DOG angles.
 MIN_MEDIAN, MAX_RESIDUAL = 30.0, 1e-4
-#: Samples folded at the default resolution, and why.
+#: Samples folded at a finer resolution, and why.
+FINER_RESOLUTION = 32
 FINER = {
     "annulus": "its bands are 2 quads wide at 24, and a closed ring of them shows it as stretch",
     "circle_in_square": "a closed crease: the drive stretches the sheet to its budget, and a coarse net adds to it",
@@ -40,7 +41,7 @@ REQUIRED = {
 
 
 def fold_sample(name: str, way: str) -> solver.FoldResult:
-    resolution = solver.FoldDescription().resolution if name in FINER else RESOLUTION
+    resolution = FINER_RESOLUTION if name in FINER else RESOLUTION
     description = solver.FoldDescription(resolution=resolution)
     if way == "handles":
         handles = solver.read_handles(FOLDER / f"{name}.handles.json")

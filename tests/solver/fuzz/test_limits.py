@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import solver
-from solver.net.build import MAX_VERTICES
+from solver.net.layout import MAX_VERTICES
 
 BOX = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
 
