@@ -11,12 +11,14 @@ from ..errors import CurvefoldError
 
 
 def write_whole(path: str | os.PathLike[str], content: str | bytes) -> None:
-    """Write ``content`` (text as UTF-8) so that ``path`` is either the old file or the whole new one.
+    """Write ``content`` so that ``path`` is either the old file or the whole new one.
+
+    Text is written as UTF-8; what is no text in it, as in names of files that are none, is escaped.
 
     The content goes to a temporary file in the same folder, onto the disk, and is then moved over ``path``.
     A link stays a link: the file it points to is replaced. Raises CurvefoldError, and leaves nothing behind.
     """
-    data = content.encode("utf-8") if isinstance(content, str) else content
+    data = content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content
     target = Path(os.path.realpath(path))
     # Not tempfile: its files are private to the user, and this one becomes an ordinary file of the folder.
     # Not named after the target, whose name may already be as long as the file system allows.

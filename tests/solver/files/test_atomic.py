@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import stat
 from pathlib import Path
@@ -19,6 +20,13 @@ def test_text_and_bytes_are_written_as_they_are(tmp_path: Path) -> None:
     write_whole(str(tmp_path / "a.txt"), b"\x00\xff")
     assert (tmp_path / "a.txt").read_bytes() == b"\x00\xff"
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_what_is_no_text_in_a_name_is_escaped(tmp_path: Path) -> None:
+    name = b"caf\xe9".decode("utf-8", "surrogateescape")
+    write_whole(tmp_path / "a.txt", f'"{name}"')
+    assert (tmp_path / "a.txt").read_text() == '"caf\\udce9"'
+    assert json.loads((tmp_path / "a.txt").read_text()) == name
 
 
 def test_nothing_changes_when_the_move_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
