@@ -6,7 +6,7 @@ import argparse
 import json
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TextIO
@@ -18,7 +18,8 @@ from .files.results import FOLD_NAME, write_results
 from .files.ruling_files import RULINGS_SVG
 from .fold import FoldResult, fold, in_words
 from .folding import SqpReport
-from .pattern.reading import read_pattern
+from .pattern.read_options import BORDERS, UNITS_MM, ReadOptions
+from .pattern.reading import DRAWING_SUFFIXES, read_pattern
 from .verify_mesh import verdict, verify_mesh
 
 #: Exit codes: everything asked was reached, or a mesh is paper; folded, but not all that was asked, or a mesh is no
@@ -63,6 +64,30 @@ def add_fold_arguments(parser: argparse.ArgumentParser) -> None:
         "--rulings", action="store_true",
         help="write the rulings (rulings.obj, rulings.svg) and the Gauss image (gauss_image.obj) too",
     )  # fmt: skip
+    _add_read_arguments(parser)
+
+
+def _add_read_arguments(parser: argparse.ArgumentParser) -> None:
+    """How the drawing is read: one argument for each field of ``ReadOptions``."""
+    default = ReadOptions()
+    parser.add_argument(
+        "--border", choices=BORDERS, default=default.border,
+        help="what the sheet is: the outline that is drawn, or the drawing's page "
+        f"(default {default.border}: the page where no outline is drawn)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--sheet", type=int, default=default.sheet, metavar="N",
+        help="which sheet of a drawing that has several, counted from 1 (default: the first)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--unit", default=default.unit, metavar="UNIT",
+        help=f"what one unit of the drawing is: {', '.join(UNITS_MM)}, or dots to the inch such as 90dpi "
+        "(default: what the file says)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--scale", type=float, default=default.scale, metavar="FACTOR",
+        help=f"factor on the drawing's size (default {default.scale:g})",
+    )  # fmt: skip
 
 
 def _resolution(text: str) -> int | str:
@@ -88,6 +113,11 @@ def description_of(args: argparse.Namespace) -> FoldDescription:
     return replace(told, **given)
 
 
+def read_options_of(args: argparse.Namespace) -> ReadOptions:
+    """How the arguments have the drawing read. Raises DescriptionError on a bad value."""
+    return ReadOptions(args.border, args.sheet, args.unit, args.scale)
+
+
 def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | None = None) -> int:
     """Read, fold, write; progress and summary to ``stream``. Returns the exit code, raises nothing of ours.
 
@@ -97,20 +127,19 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
         folder = Path(args.out)
         _check_apart(Path(args.pattern), folder)
         description = description_of(args)
-        pattern = read_pattern(args.pattern)
+        pattern = read_pattern(args.pattern, read_options_of(args))
         try:
             result = fold(pattern, description, _progress(stream))
         except CurvefoldError as error:
+            error = error.with_notes(pattern.notes)
             source = _source(args, error.where.element or "")
             raise error.in_file(str(source)) if error.where.file is None else error from None
         write_results(result, folder, args.rulings)
         if on_result is not None:
             on_result(result, folder)
     except CurvefoldError as error:
-        print(in_words(error), file=stream)
-        return BAD_INPUT
-    for note in (*pattern.notes, *result.net.notes):
-        print(f"note: {note}", file=stream)
+        return _refuse(error, stream)
+    _print_notes((*pattern.notes, *result.net.notes), stream)
     print(result.summary(), file=stream)
     return REACHED if result.status.ok else NOT_REACHED
 
@@ -129,8 +158,7 @@ def run_verify(args: argparse.Namespace, stream: TextIO) -> int:
     try:
         found = verify_mesh(read_mesh(args.mesh))
     except CurvefoldError as error:
-        print(in_words(error), file=stream)
-        return BAD_INPUT
+        return _refuse(error, stream)
     if args.json:
         print(json.dumps(found.to_json(), indent=1, allow_nan=False))
     else:
@@ -138,6 +166,18 @@ def run_verify(args: argparse.Namespace, stream: TextIO) -> int:
         for fault in found.faults[1:]:
             print(f"also: {fault}", file=stream)
     return REACHED if found.ok else NOT_REACHED
+
+
+def _refuse(error: CurvefoldError, stream: TextIO) -> int:
+    """What was decided before it went wrong, then what went wrong."""
+    _print_notes(error.notes, stream)
+    print(in_words(error), file=stream)
+    return BAD_INPUT
+
+
+def _print_notes(notes: Iterable[str], stream: TextIO) -> None:
+    for note in notes:
+        print(f"note: {note}", file=stream)
 
 
 def _check_apart(drawing: Path, folder: Path) -> None:
@@ -174,7 +214,7 @@ def main(argv: list[str] | None, stream: TextIO) -> int:
     parser = argparse.ArgumentParser(prog="python -m solver", description="Fold paper along curves.")
     commands = parser.add_subparsers(dest="command", required=True)
     command = commands.add_parser("fold", help="fold a drawing and write OBJ, FOLD and a report")
-    command.add_argument("pattern", metavar="PATTERN", help="the drawing to fold (.svg, .fold)")
+    command.add_argument("pattern", metavar="PATTERN", help=f"the drawing to fold ({', '.join(DRAWING_SUFFIXES)})")
     command.add_argument("--out", required=True, metavar="DIR", help="folder for the results")
     add_fold_arguments(command)
     command.set_defaults(run=run_fold)

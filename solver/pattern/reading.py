@@ -17,6 +17,8 @@ READERS: dict[str, Callable[[str | Path, ReadOptions], tuple[CreasePattern, ...]
     ".svgz": read_svg,
     ".fold": read_fold,
 }
+#: The suffixes of all drawings that are read, in small letters.
+DRAWING_SUFFIXES: tuple[str, ...] = tuple(READERS)
 
 
 def read_patterns(path: str | Path, options: ReadOptions | None = None) -> tuple[CreasePattern, ...]:

@@ -1,0 +1,133 @@
+"""``python -m solver fold``: how a drawing is read, and what is said of one that is refused."""
+
+from __future__ import annotations
+
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from solver import Crease, CreasePattern, PatternError, ReadOptions
+from solver.command_line import main
+from solver.pattern import reading
+
+SQUARE = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], dtype=float)
+ARC = np.array([(k / 16, 0.4 + k / 16 * (1 - k / 16)) for k in range(17)])
+QUICK = ("--resolution", "8", "--angle", "20")
+
+
+def sheet(right: float) -> CreasePattern:
+    """A square sheet with one arc, so far right in its file."""
+    step = np.array([right, 0.0])
+    return CreasePattern(SQUARE + step, creases=[Crease(ARC + step)])
+
+
+@pytest.fixture
+def told(monkeypatch: pytest.MonkeyPatch) -> list[ReadOptions]:
+    """What the reader of drawings is told; every drawing has two sheets."""
+    found = []
+
+    def read(source: object, options: ReadOptions) -> tuple[CreasePattern, ...]:
+        found.append(options)
+        return sheet(0.0), sheet(3.0)
+
+    monkeypatch.setitem(reading.READERS, ".svg", read)
+    return found
+
+
+def run(*arguments: object) -> tuple[int, str]:
+    stream = io.StringIO()
+    return main(["fold", *map(str, arguments)], stream), stream.getvalue()
+
+
+def report(folder: Path) -> dict[str, object]:
+    found: dict[str, object] = json.loads((folder / "report.json").read_text())
+    return found
+
+
+def test_the_reader_is_told_what_the_user_chose(told: list[ReadOptions], tmp_path: Path) -> None:
+    code, _ = run(
+        "a.svg", "--out", tmp_path, *QUICK,
+        "--border", "page", "--sheet", "2", "--unit", "in", "--scale", "0.5",
+    )  # fmt: skip
+    assert code == 0
+    assert told == [ReadOptions("page", 2, "in", 0.5)]
+    assert report(tmp_path)["drawing"] == "a 2"
+    run("a.svg", "--out", tmp_path, *QUICK)
+    assert told[1:] == [ReadOptions()]
+
+
+def test_the_unit_is_that_of_the_results(told: list[ReadOptions], tmp_path: Path) -> None:
+    run("a.svg", "--out", tmp_path, *QUICK, "--unit", "in")
+    assert json.loads((tmp_path / "folded.fold").read_text())["frame_unit"] == "in"
+    run("a.svg", "--out", tmp_path, *QUICK, "--unit", "cm", "--scale", "0.1")
+    assert json.loads((tmp_path / "folded.fold").read_text())["frame_unit"] == "mm"
+
+
+def test_of_several_sheets_the_first_is_folded_and_a_note_says_so(told: list[ReadOptions], tmp_path: Path) -> None:
+    code, said = run("a.svg", "--out", tmp_path, *QUICK)
+    assert code == 0
+    assert report(tmp_path)["drawing"] == "a 1"
+    assert "note: the file has 2 sheets: this is the first one" in said
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        ("--unit", "furlong", "unit: must be one of mm, cm, m, in, pt, px, or dots to the inch such as 90dpi"),
+        ("--scale", "0", "scale: must be a number from"),
+        ("--scale", "nan", "scale: must be a number from"),
+        ("--sheet", "0", "sheet: must be a whole number from 1"),
+        ("--sheet", "3", "it has 2 sheets, and sheet 3 is asked for"),
+    ],
+)
+def test_a_value_that_makes_no_sense_is_one_sentence(
+    told: list[ReadOptions], tmp_path: Path, option: str, value: str, words: str
+) -> None:
+    code, said = run("a.svg", "--out", tmp_path / "out", option, value)
+    assert code == 2
+    assert words in said
+    assert len(said.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("arguments", [("--border", "frame"), ("--sheet", "two"), ("--scale", "big")])
+def test_what_is_no_value_at_all_is_refused_with_the_arguments(
+    arguments: tuple[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as stop:
+        run("a.svg", "--out", tmp_path, *arguments)
+    assert stop.value.code == 2
+    assert f"argument {arguments[0]}: invalid" in capsys.readouterr().err
+
+
+def test_a_drawing_that_is_refused_tells_first_what_was_decided(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def read(source: object, options: ReadOptions) -> tuple[CreasePattern, ...]:
+        raise PatternError("nothing in it is a border", notes=("5 green strokes were taken for cuts", "no unit"))
+
+    monkeypatch.setitem(reading.READERS, ".svg", read)
+    code, said = run("a.svg", "--out", tmp_path / "out")
+    assert code == 2
+    assert said.splitlines() == [
+        "note: 5 green strokes were taken for cuts",
+        "note: no unit",
+        "a.svg: nothing in it is a border",
+    ]
+
+
+def test_a_drawing_that_is_read_and_cannot_carry_a_net_tells_its_notes_too(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def read(source: object, options: ReadOptions) -> tuple[CreasePattern, ...]:
+        thin = SQUARE * (100, 1)
+        return (CreasePattern(thin, creases=[Crease([(50, 0), (50, 1)])], notes=["a line was left out"]),)
+
+    monkeypatch.setitem(reading.READERS, ".svg", read)
+    code, said = run("a.svg", "--out", tmp_path / "out", "--resolution", "8")
+    assert code == 2
+    assert said.splitlines()[0] == "note: a line was left out"
+    assert "quads are needed" in said.splitlines()[1]
