@@ -1,4 +1,4 @@
-"""Many drawings: each in its own folder and its own process, what is finished is not done again."""
+"""Many drawings: each sheet in its own folder and its own process, what is finished is not done again."""
 
 import csv
 import errno
@@ -11,7 +11,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,11 +19,13 @@ from typing import Any
 
 import bpy
 
+from .. import solver
 from ..solver.files.ruling_files import RULING_FILES
 from .bridge import contact_sheet
+from .drawing_list import BatchError, count_sheets, find_drawings
 from .whole_files import whole_file, write_text
 
-DRAWING_SUFFIXES = (".svg", ".svgz", ".fold")
+__all__ = ["BatchError", "Outcome", "Task", "run"]
 
 REPORT = "report.json"
 RESULTS = ("folded.obj", "folded.fold", REPORT)
@@ -48,20 +50,13 @@ FOLDED_CODES = (0, 1)
 #: What is said of a process that ended without results.
 CRASHED = 3
 
-#: A list of drawings that is longer is none.
-MAX_LIST_BYTES = 1 << 20
-
 #: The package of the whole extension.
 EXTENSION = __package__.rpartition(".")[0]
 
 
-class BatchError(Exception):
-    """The batch itself cannot run. ``str()`` is one sentence."""
-
-
 @dataclass(frozen=True)
 class Task:
-    """One drawing and the folder of its results."""
+    """One drawing, or one sheet of it, and the folder of its results."""
 
     drawing: Path
     folder: Path
@@ -101,9 +96,17 @@ class Outcome:
         return "partly folded" if self.exit_code in FOLDED_CODES else "failed"
 
 
-def run(source: Path, out: Path, *, jobs: int, render: bool, options: list[str]) -> int:
-    """Folds all drawings; 0 when every one reached its targets, 1 otherwise. Raises BatchError."""
-    tasks = list(_tasks(find_drawings(source), out, render, options))
+def run(
+    source: Path, out: Path, *, jobs: int, render: bool, options: list[str], reading: solver.ReadOptions
+) -> int:
+    """Folds all drawings; 0 when every one reached its targets, 1 otherwise. Raises BatchError.
+
+    options: the arguments of ``fold``; reading: what they say of how drawings are read
+    """
+    found = find_drawings(source)
+    tasks = list(_tasks(_sheets(found.drawings, reading), out, render, options))
+    if found.hidden:
+        _print(f"{found.hidden} hidden {'file is' if found.hidden == 1 else 'files are'} passed over")
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -125,7 +128,8 @@ def run(source: Path, out: Path, *, jobs: int, render: bool, options: list[str])
     write_text(out / SUMMARY, summary(ordered))
     pictures = _save_contact_sheets(out, [_tile(outcome) for outcome in ordered])
     bad = [outcome for outcome in ordered if outcome.exit_code != 0]
-    print(f"{len(ordered) - len(bad)} of {len(ordered)} drawings folded; {out / SUMMARY}, {pictures}")
+    things = "drawings" if len({task.drawing for task in tasks}) == len(tasks) else "sheets"
+    _print(f"{len(ordered) - len(bad)} of {len(ordered)} {things} folded; {out / SUMMARY}, {pictures}")
     return 1 if bad else 0
 
 
@@ -145,35 +149,6 @@ def _save_contact_sheets(out: Path, tiles: list[contact_sheet.Tile]) -> str:
 def _contact_sheet(out: Path, number: int) -> Path:
     path = out / CONTACT_SHEET
     return path if number == 1 else path.with_stem(f"{path.stem}-{number}")
-
-
-def find_drawings(source: Path) -> list[Path]:
-    """The drawings in a folder, by name, or in a list, in its order."""
-    try:
-        if source.is_dir():
-            drawings = sorted(path for path in source.iterdir() if path.suffix.lower() in DRAWING_SUFFIXES)
-        elif source.suffix.lower() in DRAWING_SUFFIXES:
-            drawings = [source]
-        else:
-            lines = [line.strip() for line in _list_text(source).splitlines()]
-            drawings = [source.parent / line for line in lines if line and not line.startswith("#")]
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not text"
-        raise BatchError(f"{source}: cannot be read: {reason}") from error
-    if not drawings:
-        raise BatchError(f"{source}: holds no drawings ({', '.join(DRAWING_SUFFIXES)})")
-    return drawings
-
-
-def _list_text(source: Path) -> str:
-    """The text of a list. Raises OSError, UnicodeDecodeError, BatchError."""
-    with source.open("rb") as stream:
-        data = stream.read(MAX_LIST_BYTES + 1)
-    if len(data) > MAX_LIST_BYTES:
-        raise BatchError(f"{source}: cannot be read: it is too long for a list of drawings")
-    if b"\0" in data:
-        raise BatchError(f"{source}: cannot be read: it is not text")
-    return data.decode("utf-8")
 
 
 def is_finished(task: Task) -> Outcome | None:
@@ -295,11 +270,23 @@ def _worker_command() -> tuple[list[str], dict[str, str]]:
     return [sys.executable, "-P", str(worker), user_folder, EXTENSION], environment
 
 
-def _tasks(drawings: list[Path], out: Path, render: bool, options: list[str]) -> Iterator[Task]:
-    used: set[str] = set()
+def _sheets(drawings: Iterable[Path], reading: solver.ReadOptions) -> Iterator[tuple[Path, int | None]]:
+    """Each drawing, and the number of its sheet where it has several."""
     for drawing in drawings:
+        count = count_sheets(drawing, reading)
+        for sheet in range(1, count + 1):
+            yield drawing, sheet if count > 1 else None
+
+
+def _tasks(
+    sheets: Iterable[tuple[Path, int | None]], out: Path, render: bool, options: list[str]
+) -> Iterator[Task]:
+    used: set[str] = set()
+    for drawing, sheet in sheets:
         # "...svg" has the stem "..": no name may lead out of the folder.
         stem = drawing.stem if drawing.stem.strip(".") else "drawing"
+        own = () if sheet is None else ("--sheet", str(sheet))
+        stem = stem if sheet is None else f"{stem}-sheet{sheet}"
         name, number = stem, 1
         # Case does not tell folders apart everywhere.
         while name.lower() in used or OWN_FILES.fullmatch(name.lower()):
@@ -308,7 +295,7 @@ def _tasks(drawings: list[Path], out: Path, render: bool, options: list[str]) ->
         used.add(name.lower())
         picture = PICTURE if render else THUMBNAIL
         extra = () if render else THUMBNAIL_OPTIONS
-        yield Task(drawing.absolute(), (out / name).absolute(), picture, (*options, *extra))
+        yield Task(drawing.absolute(), (out / name).absolute(), picture, (*options, *own, *extra))
 
 
 def _named_content(option: str) -> str:
@@ -362,6 +349,10 @@ def _tile(outcome: Outcome) -> contact_sheet.Tile:
 
 def _say(outcome: Outcome, done: int, total: int) -> None:
     how = "finished before" if outcome.skipped else f"{outcome.seconds:.1f} s"
-    words = f"[{done}/{total}] {outcome.task.folder.name}: {outcome.word} ({how}). {outcome.sentence}"
-    # Names of files need not be text.
-    print(words.encode("utf-8", "backslashreplace").decode("utf-8"), flush=True)
+    _print(f"[{done}/{total}] {outcome.task.folder.name}: {outcome.word} ({how}). {outcome.sentence}")
+
+
+def _print(words: str) -> None:
+    """Names of files need not be text, nor can every output show all text."""
+    encoding = sys.stdout.encoding or "utf-8"
+    print(words.encode(encoding, "backslashreplace").decode(encoding), flush=True)

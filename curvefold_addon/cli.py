@@ -40,7 +40,9 @@ def main(argv: list[str]) -> int:
 
 def fold_parser(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
     """The arguments of ``fold``: the solver's own, and what Blender adds to them."""
-    parser.add_argument("pattern", metavar="PATTERN", help="the drawing to fold (.svg, .fold)")
+    parser.add_argument(
+        "pattern", metavar="PATTERN", help=f"the drawing to fold ({', '.join(solver.DRAWING_SUFFIXES)})"
+    )
     parser.add_argument("--out", required=True, metavar="DIR", help="where the results go")
     command_line.add_fold_arguments(parser)
     parser.add_argument("--render", metavar="PNG", type=_path_ending(".png"), help="render a picture in Cycles")
@@ -68,7 +70,7 @@ def run_fold(arguments: argparse.Namespace, rest: list[str]) -> int:
 def run_batch(arguments: argparse.Namespace, rest: list[str]) -> int:
     """Folds every drawing of a folder or a list."""
     # What batch itself does not know belongs to fold; a mistake must not come up once for every drawing.
-    fold_parser(argparse.ArgumentParser(prog=f"{COMMAND} batch")).parse_args(
+    told = fold_parser(argparse.ArgumentParser(prog=f"{COMMAND} batch")).parse_args(
         ["drawing.svg", "--out", arguments.out, *rest]
     )
     return batch.run(
@@ -77,6 +79,7 @@ def run_batch(arguments: argparse.Namespace, rest: list[str]) -> int:
         jobs=arguments.jobs,
         render=arguments.render,
         options=rest,
+        reading=command_line.read_options_of(told),
     )
 
 
@@ -122,7 +125,7 @@ def _parser() -> argparse.ArgumentParser:
     many = commands.add_parser(
         "batch",
         help="fold every drawing of a folder or a list",
-        description="Folds every drawing of a folder or a list, each in its own folder. "
+        description="Folds every drawing of a folder or a list, each sheet in its own folder. "
         "Other options go to fold. What is finished already is skipped.",
         allow_abbrev=False,
     )

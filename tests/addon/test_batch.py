@@ -162,7 +162,7 @@ def test_many_drawings_have_several_sheets_and_names_of_their_own(extension, tmp
 
     # A folder of results must not stand where the table or a sheet will be written.
     names = ["summary.csv.svg", "Contact_Sheet.png.svg", "contact_sheet-2.png.svg"]
-    tasks = batch._tasks([tmp_path / name for name in names], tmp_path, False, [])
+    tasks = batch._tasks([(tmp_path / name, None) for name in names], tmp_path, False, [])
     assert [task.folder.name for task in tasks] == [
         "summary.csv-2", "Contact_Sheet.png-2", "contact_sheet-2.png-2"
     ]  # fmt: skip

@@ -29,20 +29,21 @@ ODD = st.text(string.ascii_letters + "./\\ -é\t#", max_size=14)
 def test_no_drawing_leads_out_of_the_folder(extension, names):
     batch = extension("curvefold_addon.batch")
     out = Path("/somewhere/out")
-    tasks = list(batch._tasks([Path("/drawings") / f"{name}.svg" for name in names], out, False, []))
+    sheets = [(Path("/drawings") / f"{name}.svg", sheet) for name in names for sheet in (None, 1, 2)]
+    tasks = list(batch._tasks(sheets, out, False, []))
     folders = [Path(os.path.normpath(task.folder)) for task in tasks]
     assert all(folder.parent == out for folder in folders)
-    assert len({str(folder).lower() for folder in folders}) == len(names)
+    assert len({str(folder).lower() for folder in folders}) == len(sheets)
 
 
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(data=st.binary(max_size=80))
 def test_any_list_is_read_or_refused(extension, data, tmp_path_factory):
-    batch = extension("curvefold_addon.batch")
+    lists = extension("curvefold_addon.drawing_list")
     path = tmp_path_factory.mktemp("lists") / "list.txt"
     path.write_bytes(data)
-    with contextlib.suppress(batch.BatchError):
-        assert batch.find_drawings(path)
+    with contextlib.suppress(lists.BatchError):
+        assert lists.find_drawings(path).drawings
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs devices and pipes")
@@ -74,7 +75,7 @@ def test_a_stamp_that_says_something_odd_is_not_believed(extension, tmp_path, ch
     batch = extension("curvefold_addon.batch")
     drawing = tmp_path / "a.svg"
     drawing.write_text("<svg/>")
-    (task,) = batch._tasks([drawing], tmp_path / "out", False, [])
+    (task,) = batch._tasks([(drawing, None)], tmp_path / "out", False, [])
     task.folder.mkdir(parents=True)
     for name in (*batch.RESULTS, task.picture):
         (task.folder / name).write_text("{}")
