@@ -51,12 +51,13 @@ def drawing_changed(sheet: bpy.types.Object) -> list[str]:
     return problems
 
 
-def select_only(context: bpy.types.Context, item: bpy.types.Object) -> None:
-    """Makes an object the active and the only selected one."""
-    for other in context.selected_objects:
-        other.select_set(False)
-    item.select_set(True)
-    context.view_layer.objects.active = item
+def select_only(context: bpy.types.Context, first: bpy.types.Object, *others: bpy.types.Object) -> None:
+    """Makes an object the active one, and it and others the only selected ones."""
+    for item in context.selected_objects:
+        item.select_set(False)
+    for item in (first, *others):
+        item.select_set(True)
+    context.view_layer.objects.active = first
 
 
 def in_object_mode(operator: type, context: bpy.types.Context) -> bool:

@@ -1,17 +1,18 @@
-"""An SVG or FOLD file dropped into a 3D viewport."""
+"""SVG and FOLD files dropped into a 3D viewport."""
 
 import bpy
 
+from .. import solver
 from .operators.import_drawing import ImportDrawing
 
 
 class CURVEFOLD_FH_drawing(bpy.types.FileHandler):  # noqa: N801  (Blender wants the name like this)
-    """Adds a dropped drawing as a sheet with creases."""
+    """Adds dropped drawings as sheets with creases."""
 
     bl_idname = "CURVEFOLD_FH_drawing"
     bl_label = "Crease Pattern"
     bl_import_operator = ImportDrawing.bl_idname
-    bl_file_extensions = ".svg;.svgz;.fold"
+    bl_file_extensions = ";".join(solver.DRAWING_SUFFIXES)
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:

@@ -11,7 +11,7 @@ SMALL = 0.3
 SENSOR = 72.0
 
 
-def show(context: bpy.types.Context, thing: bpy.types.Object) -> None:
+def show(context: bpy.types.Context, *things: bpy.types.Object) -> None:
     """Moves the view from which a command was given, if there is one; never turns it."""
     space = context.space_data
     if bpy.app.background or space is None or space.type != "VIEW_3D" or space.region_3d is None:
@@ -20,8 +20,9 @@ def show(context: bpy.types.Context, thing: bpy.types.Object) -> None:
     if view.view_perspective == "CAMERA":
         return
     context.view_layer.update()
-    corners = [thing.matrix_world @ Vector(corner) for corner in thing.bound_box]
-    middle = sum(corners, Vector()) / len(corners)
+    corners = [thing.matrix_world @ Vector(corner) for thing in things for corner in thing.bound_box]
+    low, high = (Vector(map(pick, zip(*corners, strict=True))) for pick in (min, max))
+    middle = (low + high) / 2.0
     size = 2.0 * max((corner - middle).length for corner in corners)
     if size == 0.0:
         return

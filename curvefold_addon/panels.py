@@ -43,7 +43,7 @@ def _draw_beginning(layout: bpy.types.UILayout, context: bpy.types.Context) -> N
     column.scale_y = 1.2
     column.operator_menu_enum("curvefold.add_sheet", "size", text="Paper Sheet", icon="MESH_PLANE")
     column.menu(SampleMenu.bl_idname, text="Sample", icon="IMAGE_DATA")
-    column.operator("curvefold.import_drawing", text="SVG Drawing…", icon="FILE_FOLDER")
+    column.operator("curvefold.import_drawing", text="Drawing…", icon="FILE_FOLDER")
     if bpy.ops.curvefold.sheet_from_object.poll():
         layout.operator("curvefold.sheet_from_object", icon="OUTLINER_OB_CURVE")
 

@@ -62,6 +62,11 @@ def count(number: int, thing: str) -> str:
     return f"{number or 'No'} {thing}{'' if number == 1 else 's'}"
 
 
+def readable(text: str) -> str:
+    """Text with names of files, which need not be text themselves."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
 def lines(sentence: str, width: float) -> list[str]:
     """A sentence in lines that fit into so many pixels (at a resolution scale of 1)."""
     return textwrap.wrap(sentence, max(16, int((width - _MARGIN) / _LETTER)))

@@ -6,6 +6,7 @@ local size times its scale (``unit_mm``).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,6 +34,9 @@ EVEN = 1e-3
 _ALONG_BORDER = 1e-3
 #: Modifiers that Blender always applies to control points; others only when they are told to.
 _ON_CONTROL_POINTS = {"HOOK", "SOFT_BODY", "MESH_DEFORM"}
+
+#: Between the sheets of files that are added together, relative to the width of the first file's.
+ROW_GAP = 0.1
 
 DEFAULT_NAME = "Paper Sheet"
 
@@ -73,9 +77,53 @@ def sheet_size(sheet: Any) -> float:
     return float(np.ptp(np.vstack(corners)[:, :2], axis=0).max()) if corners else 0.0
 
 
+def add_drawings(files: Sequence[Sequence[solver.CreasePattern]], collection: Any, place: Any) -> list[Any]:
+    """The sheets of drawings with their creases, in true scale for the current scene.
+
+    Those of a file lie to each other as in the file, and the files in a row; the middle of the first is at
+    ``place``, (x, y, z).
+    """
+    length = _metres_in_a_unit()
+    x, y = np.asarray(place)[:2] - 0.5 * _box(files[0], length).sum(axis=0)
+    sheets = []
+    for patterns, step in zip(files, row(files, length), strict=True):
+        for pattern in patterns:
+            sheet = add_drawing(pattern, collection)
+            middle = 0.5 * _box([pattern], length).sum(axis=0) + step
+            sheet.location = (x + middle[0], y + middle[1], place[2])
+            sheets.append(sheet)
+    return sheets
+
+
+def row(files: Sequence[Sequence[solver.CreasePattern]], length: float = 1.0) -> list[tuple[float, float]]:
+    """How far along x and y the sheets of each file are moved to lie in a row to the right of the first one's.
+
+    length: metres in the unit of the result
+    """
+    steps, right = [], 0.0
+    boxes = [_box(patterns, length) for patterns in files]
+    for k, (low, high) in enumerate(boxes):
+        first_low, first_high = boxes[0]
+        if k == 0:
+            right = float(low[0])
+        steps.append((right - float(low[0]), 0.5 * float((first_low + first_high - low - high)[1])))
+        right += float(high[0] - low[0]) + ROW_GAP * float(first_high[0] - first_low[0])
+    return steps
+
+
+def _box(patterns: Sequence[solver.CreasePattern], length: float) -> Array:
+    """(2,2) the lowest and the highest corner of sheets, in units of ``length`` metres."""
+    points = np.vstack([pattern.boundary * (metres_per_unit(pattern.unit_mm) / length) for pattern in patterns])
+    return np.array([points.min(axis=0), points.max(axis=0)])
+
+
+def _metres_in_a_unit() -> float:
+    return float(bpy.context.scene.unit_settings.scale_length)
+
+
 def add_drawing(pattern: solver.CreasePattern, collection: Any) -> Any:
     """A sheet with its creases, in true scale for the current scene, centred on the world's origin."""
-    scale = metres_per_unit(pattern.unit_mm) / bpy.context.scene.unit_settings.scale_length
+    scale = metres_per_unit(pattern.unit_mm) / _metres_in_a_unit()
     low, high = pattern.boundary.min(axis=0), pattern.boundary.max(axis=0)
     middle, size = 0.5 * (low + high), scale * float((high - low).max())
 
@@ -170,7 +218,7 @@ class _Reading:
             self.trouble(
                 "it is scaled unevenly, so the paper is not as it looks; apply its scale", self._sheet, None
             )
-        return 1000.0 * float(bpy.context.scene.unit_settings.scale_length * np.sqrt(area))
+        return 1000.0 * float(_metres_in_a_unit() * np.sqrt(area))
 
     # ---- the border
 

@@ -6,7 +6,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from ... import solver
-from .. import samples
+from .. import samples, wording
 from ..drawing_context import in_object_mode
 from .import_drawing import add_at_cursor
 
@@ -32,9 +32,9 @@ class AddSample(bpy.types.Operator):
         try:
             pattern = solver.read_pattern(samples.drawing(self.sample))
         except solver.CurvefoldError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, wording.readable(str(error)))
             return {"CANCELLED"}
-        add_at_cursor(context, pattern)
+        add_at_cursor(context, [[pattern]])
         return {"FINISHED"}
 
 

@@ -1,26 +1,27 @@
-"""File > Import > Crease Pattern: read a drawing, fold it, add the paper. Blocking, so also headless."""
+"""File > Import > Crease Pattern, folded: read drawings, fold them, add the papers. Blocking, so also headless."""
 
 from math import degrees, pi, radians
 from typing import ClassVar
 
 import bpy
-from bpy.props import FloatProperty, IntProperty, StringProperty
+from bpy.props import FloatProperty, IntProperty
 
 from ... import solver
-from .. import paper_material
-from ..bridge import mesh, papers
+from .. import paper_material, wording
+from ..bridge import drawing, mesh, papers
 from ..drawing_context import select_only
+from .drawing_files import READING, SUFFIXES, DrawingFiles
 
 
-class FoldDrawing(bpy.types.Operator):
-    """Fold the crease pattern in an SVG or FOLD file and add the paper"""
+class FoldDrawing(DrawingFiles, bpy.types.Operator):
+    """Fold the crease patterns in SVG or FOLD files and add the papers"""
 
     bl_idname = "curvefold.fold_drawing"
     bl_label = "Fold Drawing"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
-    filepath: StringProperty(subtype="FILE_PATH", options={"SKIP_SAVE"})
-    filter_glob: StringProperty(default="*.svg;*.svgz;*.fold", options={"HIDDEN"})
+    choices: ClassVar[tuple[str, ...]] = (*READING, "angle", "resolution")
+
     resolution: IntProperty(
         name="Resolution",
         description="Quads along the longer side of the sheet",
@@ -37,32 +38,41 @@ class FoldDrawing(bpy.types.Operator):
         max=pi,
     )
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        if self.filepath:
-            return self.execute(context)
-        context.window_manager.fileselect_add(self)
-        return {"RUNNING_MODAL"}
-
     def execute(self, context: bpy.types.Context) -> set[str]:
-        if not self.filepath:
-            self.report({"ERROR"}, "No drawing was chosen")
+        files = self.read_files()
+        added = []
+        for patterns, (x, y) in zip(files, drawing.row(files), strict=True):
+            for pattern in patterns:
+                paper = self._fold(context, pattern, sum(map(len, files)) > 1)
+                if paper is not None:
+                    paper.location = (x, y, 0.0)
+                    added.append(paper)
+        if not added:
             return {"CANCELLED"}
+        select_only(context, *added)
+        return {"FINISHED"}
+
+    def _fold(
+        self, context: bpy.types.Context, pattern: solver.CreasePattern, one_of_many: bool
+    ) -> bpy.types.Object | None:
+        """A paper where the file has it; None when it cannot be folded. The user is told how it went."""
+        beginning = f"{pattern.name}: " if one_of_many else ""
         try:
-            pattern = solver.read_pattern(bpy.path.abspath(self.filepath))
             description = solver.FoldDescription(resolution=self.resolution, angle=degrees(self.angle))
             result = solver.fold(pattern, description)
         except solver.CurvefoldError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+            self.refuse(error if error.where.file else error.in_file(pattern.name), beginning)
+            return None
         paper = mesh.add_paper(result, context.collection, paper_material.paper_material())
         papers.keep(paper, result)
-        select_only(context, paper)
-        self.report({"INFO"} if result.status.ok else {"WARNING"}, result.status.sentence)
-        return {"FINISHED"}
+        self.tell(result.net.notes, beginning)
+        kind = "INFO" if result.status.ok else "WARNING"
+        self.report({kind}, wording.readable(beginning + result.status.sentence))
+        return paper
 
 
 def _menu_entry(self: bpy.types.Menu, context: bpy.types.Context) -> None:
-    self.layout.operator(FoldDrawing.bl_idname, text="Crease Pattern, folded (.svg, .fold)")
+    self.layout.operator(FoldDrawing.bl_idname, text=f"Crease Pattern, folded ({SUFFIXES})")
 
 
 def register() -> None:

@@ -87,10 +87,13 @@ def test_a_folded_form_is_one_sentence(fold_file):
     assert not bpy.data.objects
 
 
-def test_both_kinds_of_files_are_offered():
+def test_all_kinds_of_files_are_offered(extension):
+    suffixes = extension("solver").DRAWING_SUFFIXES
+    assert {".svg", ".fold"} <= set(suffixes)
     for name in ("import_drawing", "fold_drawing"):
         properties = getattr(bpy.ops.curvefold, name).get_rna_type().properties
-        assert properties["filter_glob"].default == "*.svg;*.svgz;*.fold"
+        assert properties["filter_glob"].default.split(";") == [f"*{suffix}" for suffix in suffixes]
+    assert bpy.types.CURVEFOLD_FH_drawing.bl_file_extensions.split(";") == list(suffixes)
 
 
 def test_a_bad_drawing_is_one_sentence(broken_drawing):
@@ -117,7 +120,6 @@ def test_only_in_object_mode(drawing):
 def test_a_dropped_drawing(extension, drawing, fold_file):
     handler = bpy.types.CURVEFOLD_FH_drawing
     assert handler.bl_import_operator == "curvefold.import_drawing"
-    assert handler.bl_file_extensions == ".svg;.svgz;.fold"
     window = bpy.context.window_manager.windows[0]
     areas = {area.type: area for area in window.screen.areas}
     with bpy.context.temp_override(window=window, area=areas["VIEW_3D"]):
@@ -144,6 +146,11 @@ def test_a_dropped_drawing(extension, drawing, fold_file):
             "INVOKE_DEFAULT", directory=str(fold_file.parent), files=[{"name": fold_file.name}]
         ) == {"FINISHED"}
     assert bpy.context.active_object.name == "folded arc"
+    (fold_file.parent / "other.fold").write_bytes(fold_file.read_bytes())
+    both = [{"name": fold_file.name}, {"name": "other.fold"}]
+    with bpy.context.temp_override(window=window, area=areas["VIEW_3D"]):
+        bpy.ops.wm.drop_import_file("INVOKE_DEFAULT", directory=str(fold_file.parent), files=both)
+    assert [item.name for item in bpy.context.selected_objects] == ["folded arc.001", "other"]
     with bpy.context.temp_override(window=window, area=areas["OUTLINER"]):
         assert not handler.poll_drop(bpy.context)
 
