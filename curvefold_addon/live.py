@@ -103,9 +103,9 @@ def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
     uid = mesh.session_uid
     found = make_session(paper)
     _stale.pop(uid, None)
-    source = _wanted_source(mesh)
-    if source != found.source:
-        found = carried_session(source, found.snapshot())
+    wanted = _wanted_source(mesh)
+    if not found.source.meets(wanted):
+        found = carried_session(wanted, found.snapshot())
         adopt(paper, found)
     _faults.pop(uid, None)
     found.advance(_inputs(paper, found), max_iterations)
@@ -388,13 +388,15 @@ def _inputs(paper: bpy.types.Object, found: Session) -> hooks.Inputs:
 
 
 def _wanted_source(mesh: bpy.types.Mesh) -> state.Source:
-    """What the paper should be folded from now. Raises PatternError, StateError."""
+    """What the paper should be folded from now, with the resolution of its settings. Raises PatternError,
+    StateError.
+    """
     settings = mesh.curvefold
     stored = state.load_source(mesh)
     sheet = settings.sheet
     # A paper whose drawing is gone keeps it.
     if sheet is None or sheet.name not in bpy.context.scene.objects:
-        return state.Source(stored.pattern, settings.resolution, stored.scale)
+        return stored.told(settings.resolution)
     return state.source_of(drawing.read_drawing(sheet), settings.resolution)
 
 
@@ -469,13 +471,13 @@ def _follow(uid: int, deadline: float, transforming: bool) -> bool:
     if uid in _stale and not transforming and time.monotonic() - _stale[uid] >= DRAWING_RESTS:
         del _stale[uid]
         try:
-            source = _wanted_source(mesh)
+            wanted = _wanted_source(mesh)
         except (solver.CurvefoldError, state.StateError) as error:
             _faults[uid] = str(error)  # it goes on as it was
         else:
-            if source != found.source:
+            if not found.source.meets(wanted):
                 found.write(mesh)  # what undo may just have led to
-                _making[uid] = pool().submit(carried_session, source, found.snapshot())
+                _making[uid] = pool().submit(carried_session, wanted, found.snapshot())
                 return True
             _faults.pop(uid, None)
     inputs = _inputs(paper, found)

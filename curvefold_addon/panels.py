@@ -6,6 +6,7 @@ import bpy
 
 from . import drawing_context, live, wording
 from .bridge import baking, drawing_objects
+from .bridge.state import AUTOMATIC
 from .control_panels import (
     AngleList,
     CreaseList,
@@ -247,6 +248,10 @@ class AdvancedPanel(PaperPanel, bpy.types.Panel):
         column.use_property_decorate = False
         column.prop(mesh.curvefold, "angle")
         column.prop(mesh.curvefold, "resolution")
+        if mesh.curvefold.resolution == AUTOMATIC and report is not None and report.resolution:
+            row = column.split(factor=0.4)
+            row.label(text="")
+            row.label(text=f"Automatic: {report.resolution}")
         column.operator("curvefold.settle", text="Fold until Settled", icon="CHECKMARK")
         column.operator("curvefold.check_paper", icon="VIEWZOOM")
         if report is not None and report.vertices:

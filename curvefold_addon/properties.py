@@ -21,6 +21,7 @@ from bpy.props import (
 
 from . import control_properties, handle_choice, live
 from .control_properties import SIDES, CreaseSettings, JointSettings, PointAngleSettings, WeightSettings, wake
+from .resolution_property import resolution_property
 
 ROLES = (
     ("NONE", "Neither", "No part of a drawing"),
@@ -98,15 +99,7 @@ class PaperSettings(bpy.types.PropertyGroup):
     sheet: PointerProperty(
         name="Drawing", description="The sheet whose drawing is folded", type=bpy.types.Object, update=_rebuild
     )
-    resolution: IntProperty(
-        name="Resolution",
-        description="Quads along the longer side of the sheet",
-        default=32,
-        min=4,
-        soft_max=80,
-        max=1000,
-        update=_rebuild,
-    )
+    resolution: resolution_property(soft_max=80, update=_rebuild)
     live: BoolProperty(
         name="Live", description="The paper follows its handles and its drawing", default=True, update=wake
     )

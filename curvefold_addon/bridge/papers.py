@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import bpy
 from mathutils import Matrix  # type: ignore[import-not-found]
 
 from ...solver import Crease, CreasePattern, Handle, Status
+from ...solver.description import AUTO
 from . import controls, hooks, state
 from . import mesh as surface
 from .curve_targets import target_points
 from .kept_controls import keep_controls
-from .session import Session, drawn_of
+from .nets import drawn_of
+from .session import Session
 
 if TYPE_CHECKING:
     from ...solver import FoldResult
@@ -41,7 +44,8 @@ def keep(paper: Any, result: FoldResult) -> None:
     scale = surface.metres_per_unit(result.pattern.unit_mm)
     description = result.description
     settings = mesh.curvefold
-    settings.resolution = description.resolution
+    automatic = description.resolution == AUTO
+    settings.resolution = state.AUTOMATIC if automatic else result.net.resolution
     if description.angle is not None:
         settings.angle = math.radians(description.angle)
         settings.fold = 100.0
@@ -59,7 +63,7 @@ def keep(paper: Any, result: FoldResult) -> None:
         # It was folded as if the drawing named no sides, and so it goes on.
         free = tuple(Crease(c.points, c.closed, "U", c.name, c.beziers) for c in pattern.creases)
         pattern = CreasePattern(pattern.boundary, pattern.holes, free, pattern.name, pattern.unit_mm, pattern.notes)
-    source = state.source_of(pattern, description.resolution, scale)
+    source = replace(state.source_of(pattern, result.net.resolution, scale), automatic=automatic)
     state.store(mesh, source, result.positions * scale)
     drawn = drawn_of(source)
     controls.match_creases(settings, drawn)

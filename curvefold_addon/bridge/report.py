@@ -37,8 +37,9 @@ class CreaseReport:
 
 @dataclass(frozen=True)
 class Report:
-    """state: settled, folding or trouble; stretch: relative; fold_angle: median, degrees; milliseconds: for one
-    iteration; lacks: what is asked and cannot be had, sentences."""
+    """state: settled, folding or trouble; stretch: relative; fold_angle: median, degrees; resolution: of the net,
+    quads along the longer side; milliseconds: for one iteration; lacks: what is asked and cannot be had, sentences.
+    """
 
     state: str
     sentence: str
@@ -47,6 +48,7 @@ class Report:
     fold_angle: float
     creases: tuple[CreaseReport, ...]
     vertices: int
+    resolution: int
     iterations: int
     milliseconds: float
     lacks: tuple[str, ...] = ()
@@ -54,7 +56,7 @@ class Report:
 
 def describe_fault(fault: str) -> Report:
     """The report of a paper that cannot be worked on."""
-    return Report("trouble", _sentence(fault), 0.0, 0.0, 0.0, (), 0, 0, 0.0)
+    return Report("trouble", _sentence(fault), 0.0, 0.0, 0.0, (), 0, 0, 0, 0.0)
 
 
 def describe(found: Session, settings: Any, fault: str, folding: bool, units: Any) -> Report:
@@ -71,6 +73,7 @@ def describe(found: Session, settings: Any, fault: str, folding: bool, units: An
         median,
         creases,
         len(found.net.rest),
+        found.source.resolution,
         found.iterations,
         found.milliseconds,
         tuple(_sentence(lack) for lack in _lacks(found)),

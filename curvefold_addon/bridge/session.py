@@ -7,7 +7,6 @@ be thrown away at any time: ``state`` keeps what it is made from.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import count
 from typing import Any
 from uuid import uuid4
@@ -15,17 +14,15 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
-from ...solver import Handle, HandleError, Measurement, PiecewiseDog, SqpReport, Status, build_net, measure
+from ...solver import Handle, HandleError, Measurement, PiecewiseDog, SqpReport, Status, measure
 from ...solver.controls.pull import Finding
-from ...solver.net.carry_over import carry_over, scaled
+from ...solver.net.carry_over import carry_over
 from . import mesh as surface
-from . import state, worker
-from .controls import DrawnCrease
+from . import nets, state, worker
 from .hooks import SAME_TARGET, WIDTH, Inputs, handles_begin, same
+from .nets import choose, drawn_of, net_of
 from .worker import Step, Worker
 
-#: Nets that are kept although no paper shows them: undo and redo step back and forth between them.
-_KEPT_NETS = 8
 #: Ends of motions that are kept for undo and redo.
 _KEPT_ENDS = 64
 
@@ -39,27 +36,7 @@ def stop() -> None:
     """Ends the thread and forgets what could be made again."""
     worker.stop()
     _ends.clear()
-    net_of.cache_clear()
-    drawn_of.cache_clear()
-    state.pattern_of.cache_clear()
-
-
-@lru_cache(maxsize=_KEPT_NETS)
-def net_of(source: state.Source) -> PiecewiseDog:
-    """The net of a source, in the paper's units. Raises CurvefoldError."""
-    net = build_net(state.pattern_of(source), source.resolution)
-    return net if source.scale == 1.0 else scaled(net, source.scale)
-
-
-@lru_cache(maxsize=_KEPT_NETS)
-def drawn_of(source: state.Source) -> tuple[DrawnCrease, ...]:
-    """The creases as they are drawn."""
-    pattern = state.pattern_of(source)
-    creases = []
-    for k, crease in enumerate(pattern.creases):
-        first, last = ((float(x) * source.scale, float(y) * source.scale) for x, y in crease.points[[0, -1]])
-        creases.append(DrawnCrease(pattern.crease_label(k), crease.assignment, (first, last)))
-    return tuple(creases)
+    nets.forget()
 
 
 @dataclass(frozen=True, eq=False)
@@ -359,14 +336,16 @@ def stored_session(shape: state.StoredShape) -> Session:
     return session
 
 
-def flat_session(source: state.Source) -> Session:
+def flat_session(wanted: state.Source) -> Session:
     """A session of a new net, flat. Raises CurvefoldError."""
+    source = choose(wanted).source
     net = net_of(source)
     return Session(source, net, flat_positions(net), None)
 
 
-def carried_session(source: state.Source, old: Snapshot) -> Session:
+def carried_session(wanted: state.Source, old: Snapshot) -> Session:
     """A session of a new net with the shape of another. In any thread. Raises CurvefoldError."""
+    source = choose(wanted).source
     net = net_of(source)
     if np.array_equal(net.rest, old.net.rest) and np.array_equal(net.quads, old.net.quads):
         # Only names have changed, or sides, and those are among the numbers of the rest.

@@ -7,7 +7,7 @@ the net's own coordinates lie beside it as an ID property, bit for bit. Settings
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any
 
@@ -15,6 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solver import Crease, CreasePattern
+from ...solver.description import RESOLUTIONS
+
+#: What settings say instead of a resolution, for one that follows the drawing.
+AUTOMATIC = 0
 
 #: Counts up when what is stored changes its meaning.
 FORMAT = 2
@@ -24,6 +28,7 @@ _POSITIONS = "curvefold_positions"
 _PATTERN = "curvefold_pattern"
 _RESOLUTION = "curvefold_resolution"
 _SCALE = "curvefold_scale"
+_CHOSEN = "curvefold_resolution_chosen"
 _RUN = "curvefold_run"
 _REST = "curvefold_rest"
 
@@ -36,13 +41,26 @@ class StateError(ValueError):
 class Source:
     """What a net is made from, and all of it: equal sources make equal nets.
 
-    pattern: the drawing as JSON; resolution: quads along the longer side; scale: the paper's units in one of the
-    drawing's.
+    pattern: the drawing as JSON; resolution: quads along the longer side, AUTOMATIC when they are still to be
+    chosen; scale: the paper's units in one of the drawing's; automatic: whether the resolution was chosen for the
+    drawing. It is kept with it, so that no later version has to choose the same.
     """
 
     pattern: str
     resolution: int
     scale: float = 1.0
+    automatic: bool = field(default=False, compare=False)
+
+    def told(self, resolution: int) -> Source:
+        """The same drawing with the resolution that settings ask for; AUTOMATIC leaves it to be chosen."""
+        asked = resolution if resolution == AUTOMATIC else max(RESOLUTIONS[0], resolution)
+        return replace(self, resolution=asked, automatic=False)
+
+    def meets(self, wanted: Source) -> bool:
+        """Whether this is what another one comes to, whose resolution may be left to be chosen."""
+        if wanted.resolution != AUTOMATIC:
+            return self == wanted
+        return self.automatic and (self.pattern, self.scale) == (wanted.pattern, wanted.scale)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +77,8 @@ class StoredShape:
 
 
 def source_of(pattern: CreasePattern, resolution: int, scale: float = 1.0) -> Source:
-    """The source of ``build_net(pattern, resolution)``."""
-    return Source(json.dumps(_pattern_data(pattern), default=_plain), int(resolution), float(scale))
+    """The source of ``build_net(pattern, resolution)``; AUTOMATIC leaves the resolution to be chosen."""
+    return Source(json.dumps(_pattern_data(pattern), default=_plain), AUTOMATIC, float(scale)).told(int(resolution))
 
 
 @lru_cache(maxsize=1)  # a net and its creases as drawn are asked for one after the other
@@ -80,6 +98,7 @@ def store(mesh: Any, source: Source, positions: NDArray[np.float64]) -> None:
     mesh[_PATTERN] = source.pattern
     mesh[_RESOLUTION] = source.resolution
     mesh[_SCALE] = source.scale
+    mesh[_CHOSEN] = source.automatic
     store_positions(mesh, positions)
 
 
@@ -112,7 +131,8 @@ def load_source(mesh: Any) -> Source:
     if mesh[_FORMAT] != FORMAT:
         age = "a newer" if mesh[_FORMAT] > FORMAT else "an older"
         raise StateError(f"{mesh.name} was folded by {age} version of Curvefold")
-    return Source(mesh[_PATTERN], mesh[_RESOLUTION], mesh[_SCALE])
+    # Without the last: folded by a version that chose no resolution.
+    return Source(mesh[_PATTERN], mesh[_RESOLUTION], mesh[_SCALE], bool(mesh.get(_CHOSEN, False)))
 
 
 def load(mesh: Any) -> StoredShape:

@@ -4,12 +4,13 @@ from math import degrees, pi, radians
 from typing import ClassVar
 
 import bpy
-from bpy.props import FloatProperty, IntProperty
+from bpy.props import FloatProperty
 
 from ... import solver
 from .. import paper_material, wording
 from ..bridge import drawing, mesh, papers
 from ..drawing_context import select_only
+from ..resolution_property import resolution_property, told
 from .drawing_files import READING, SUFFIXES, DrawingFiles
 
 
@@ -22,13 +23,7 @@ class FoldDrawing(DrawingFiles, bpy.types.Operator):
 
     choices: ClassVar[tuple[str, ...]] = (*READING, "angle", "resolution")
 
-    resolution: IntProperty(
-        name="Resolution",
-        description="Quads along the longer side of the sheet",
-        default=32,
-        min=4,
-        soft_max=100,
-    )
+    resolution: resolution_property(soft_max=100)
     angle: FloatProperty(
         name="Fold Angle",
         description="How far every crease is folded, on whichever side it chooses; flat is zero",
@@ -58,7 +53,7 @@ class FoldDrawing(DrawingFiles, bpy.types.Operator):
         """A paper where the file has it; None when it cannot be folded. The user is told how it went."""
         beginning = f"{pattern.name}: " if one_of_many else ""
         try:
-            description = solver.FoldDescription(resolution=self.resolution, angle=degrees(self.angle))
+            description = solver.FoldDescription(resolution=told(self.resolution), angle=degrees(self.angle))
             result = solver.fold(pattern, description)
         except solver.CurvefoldError as error:
             self.refuse(error if error.where.file else error.in_file(pattern.name), beginning)

@@ -3,13 +3,15 @@
 from typing import ClassVar
 
 import bpy
-from bpy.props import FloatProperty, IntProperty
+from bpy.props import FloatProperty
 
 from ... import solver
 from .. import handle_making, live, paper_material
 from ..bridge import drawing, papers, state
+from ..bridge.nets import choose
 from ..bridge.session import flat_session
 from ..drawing_context import NO_SHEET, active_sheet, select_only
+from ..resolution_property import resolution_property
 
 
 class MakePaper(bpy.types.Operator):
@@ -19,14 +21,7 @@ class MakePaper(bpy.types.Operator):
     bl_label = "Make Paper"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
-    resolution: IntProperty(
-        name="Resolution",
-        description="Quads along the longer side of the sheet",
-        default=32,
-        min=4,
-        soft_max=80,
-        max=1000,
-    )
+    resolution: resolution_property(soft_max=80)
     fold: FloatProperty(
         name="Fold",
         description="How far all creases are folded, each on the side it chooses",
@@ -48,7 +43,8 @@ class MakePaper(bpy.types.Operator):
         if context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
         try:
-            made = flat_session(state.source_of(drawing.read_drawing(sheet), self.resolution))
+            chosen = choose(state.source_of(drawing.read_drawing(sheet), self.resolution))
+            made = flat_session(chosen.source)
             paper = papers.new_paper("Paper", context.collection, paper_material.paper_material())
             paper.matrix_world = sheet.matrix_world
             settings = paper.data.curvefold
@@ -62,7 +58,7 @@ class MakePaper(bpy.types.Operator):
         except solver.CurvefoldError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        for note in made.net.notes:
+        for note in (*chosen.notes, *made.net.notes):
             self.report({"INFO"}, note)
         return {"FINISHED"}
 

@@ -278,6 +278,17 @@ def test_drawing_and_advanced_panels_draw(panels, paper):
     assert {"angle", "resolution"} <= set(drawn(panels.AdvancedPanel)["properties"])
 
 
+def test_what_an_automatic_resolution_is_stands_below_it(panels, extension, paper):
+    live = extension("curvefold_addon.live")
+    assert "Automatic" not in said(drawn(panels.AdvancedPanel))
+    paper.data.curvefold.resolution = 0
+    live.settle(paper.data)
+    number = live.session(paper.data).source.resolution
+    assert f"Automatic: {number}" in drawn(panels.AdvancedPanel)["texts"]
+    live.forget()
+    assert "Automatic" not in said(drawn(panels.AdvancedPanel)), "not known while it sleeps"
+
+
 @pytest.mark.parametrize(
     ("found", "angle", "folded", "text"),
     [

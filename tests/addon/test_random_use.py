@@ -720,7 +720,7 @@ def check(walk: Walk) -> None:
         if not mesh.curvefold.is_paper:
             continue
         kept = addon.state.load(mesh)
-        net = addon.session.net_of(kept.source)
+        net = addon.nets.net_of(kept.source)
         assert kept.positions.shape == (len(net.rest), 3), mesh.name
         assert np.isfinite(kept.positions).all(), mesh.name
         report = addon.live.report(mesh)
@@ -787,7 +787,7 @@ def addon(extension, pytestconfig, monkeypatch):
     live = extension("curvefold_addon.live")
     # A drawing need not rest before it is folded anew.
     monkeypatch.setattr(live, "DRAWING_RESTS", 0.0)
-    bridge = {name: extension(f"curvefold_addon.bridge.{name}") for name in ("drawing", "session", "state")}
+    bridge = {name: extension(f"curvefold_addon.bridge.{name}") for name in ("drawing", "nets", "session", "state")}
     solver = extension("solver")
     package = solver.__package__.rpartition(".")[0]
     handlers = extension("curvefold_addon.handlers")
