@@ -59,7 +59,6 @@ def _draw_sheet(layout: bpy.types.UILayout, context: bpy.types.Context, sheet: b
         say(layout, context, wording.NO_CREASE, "INFO")
     column = layout.column()
     column.scale_y = 1.5
-    column.enabled = creases > 0
     column.operator("curvefold.make_paper", icon="MOD_CLOTH")
 
 
@@ -89,7 +88,7 @@ def _draw_standing(layout: bpy.types.UILayout, context: bpy.types.Context, paper
     else:
         trouble = report.state == "trouble"
         say(box, context, report.sentence, wording.STATE_ICONS[report.state], alert=trouble)
-        if report.creases:
+        if report.vertices:
             say(box, context, wording.stretch(report), "BLANK1")
     if baking.is_baked(mesh):
         say(box, context, wording.BAKED, "SHAPEKEY_DATA")

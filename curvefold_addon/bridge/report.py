@@ -106,7 +106,7 @@ def _standing(
         return "trouble", "the fold failed; the last good shape is kept"
     asked = None if inputs is None else inputs.angle
     if folding and found.rest is None:
-        return "folding", "folding…" if asked is None else f"folding: {median:.0f}° of {asked:.0f}°"
+        return "folding", f"folding: {median:.0f}° of {asked:.0f}°" if asked is not None and creases else "folding…"
     late = _late_handle(found, settings, units)
     if late:
         return "trouble", late
@@ -127,7 +127,7 @@ def _standing(
         return "settled", depth[0]
     # What was found is not kept in a file: a paper that has not moved since it was opened shows how deep it is.
     unmoved = found.report is None and asked is not None and median < ANGLE_REACHED * asked
-    return "settled", f"settled at {median:.0f}° of {asked:.0f}°" if unmoved else "settled"
+    return "settled", f"settled at {median:.0f}° of {asked:.0f}°" if unmoved and creases else "settled"
 
 
 def _troubles(found: Session) -> list[str]:

@@ -106,6 +106,16 @@ def sheet(extension: Callable[[str], ModuleType], drawing: Path) -> object:
 
 
 @pytest.fixture
+def cross_border() -> Callable[[object], None]:
+    """Makes a drawing one that nothing can be made of: a corner of its border goes through the opposite edge."""
+
+    def cross(sheet: object) -> None:
+        sheet.data.splines[0].points[0].co = (0.2, 0.03, 0.0, 1.0)
+
+    return cross
+
+
+@pytest.fixture
 def paper(sheet: object) -> object:
     """A live paper of it, flat and active."""
     import bpy

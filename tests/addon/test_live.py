@@ -707,16 +707,16 @@ def test_another_resolution_keeps_the_shape(held, live, at_once):
     assert len(paper.data.vertices) == before
 
 
-def test_a_drawing_that_cannot_be_folded_is_said_and_the_paper_stays(held, sheet, live, at_once):
+def test_a_drawing_that_cannot_be_folded_is_said_and_the_paper_stays(held, sheet, live, at_once, cross_border):
     paper, _ = held
     before = shape(paper.data)
-    bpy.data.objects.remove(sheet.children[0])
+    cross_border(sheet)
     live.rebuild(paper.data)
     tick_until_rest(live)
     assert shape(paper.data) == before
     facts = live.report(paper.data)
     assert facts.state == "trouble"
-    assert "no crease" in facts.sentence
+    assert "crosses itself" in facts.sentence
 
 
 def test_a_paper_whose_drawing_was_deleted_goes_on(held, sheet, live, at_once):

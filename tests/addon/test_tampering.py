@@ -92,9 +92,9 @@ def test_a_mesh_that_another_object_edits_is_left_alone(folded_paper, live):
     assert bytes(mesh["curvefold_positions"]) != kept
 
 
-def test_a_paper_whose_drawing_is_spoilt_still_folds(folded_paper, sheet, live, monkeypatch):
+def test_a_paper_whose_drawing_is_spoilt_still_folds(folded_paper, sheet, live, monkeypatch, cross_border):
     monkeypatch.setattr(live, "DRAWING_RESTS", 0.0)
-    bpy.data.objects.remove(sheet.children[0])
+    cross_border(sheet)
     mesh = folded_paper.data
     live.rebuild(mesh)
     kept = bytes(mesh["curvefold_positions"])
@@ -102,4 +102,4 @@ def test_a_paper_whose_drawing_is_spoilt_still_folds(folded_paper, sheet, live, 
     tick_until_rest(live)
     assert bytes(mesh["curvefold_positions"]) != kept
     assert live.report(mesh).state == "trouble"
-    assert "no crease" in live.report(mesh).sentence
+    assert "crosses itself" in live.report(mesh).sentence
