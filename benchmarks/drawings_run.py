@@ -150,19 +150,18 @@ def _by_angle(job: FoldJob, pattern: solver.CreasePattern) -> Fold:
         float(m.stretch.mean()),
         float(m.stretch.max()),
         result.iterations,
-        resolution=description.resolution,
+        resolution=result.net.resolution,
         notes=tuple(result.net.notes),
     )
 
 
 def _by_corners(job: FoldJob, pattern: solver.CreasePattern) -> Fold:
-    resolution = job.resolution or PROTOCOL_RESOLUTION
     run = Run(seed=0)
-    net = solver.build_net(pattern, resolution)
+    net = solver.build_net(pattern, job.resolution or PROTOCOL_RESOLUTION)
     drag_net(run, net, protocol_drag(pattern))
     return Fold(
         job, run.status, run.ok, run.sentence, run.folded, tuple(run.fold_angle), run.stretch_mean,
-        run.stretch_max, run.iterations, resolution=resolution, notes=tuple(net.notes),
+        run.stretch_max, run.iterations, resolution=net.resolution, notes=tuple(net.notes),
     )  # fmt: skip
 
 

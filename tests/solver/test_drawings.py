@@ -62,6 +62,7 @@ def test_a_sheet_is_read_and_folded_in_both_ways(folder: Path) -> None:
     assert by_angle.fold_angle == pytest.approx((60, 60, 60), abs=2)
     assert by_corners.status == "folded"
     assert by_corners.iterations == 24 * 5
+    assert by_corners.resolution == 32
     assert 0 < by_corners.stretch_mean < by_corners.stretch_max
     table = "\n".join(rows(readings, folds))
     assert "5 M 6 V" in table
