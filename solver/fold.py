@@ -16,7 +16,7 @@ from .controls.pair import Pair
 from .controls.pull import Finding, Lack
 from .description import FoldDescription, Handle
 from .drive import MAX_MEAN_STRETCH
-from .errors import CurvefoldError
+from .errors import CurvefoldError, PatternError
 from .folding import OPENING_ANGLES, REACHED, FoldModel, SqpReport, Status
 from .laid_flat import off_plane
 from .measurement import Measurement, measure
@@ -199,9 +199,12 @@ def fold(
     """Fold a drawing as described, from flat.
 
     progress(iterations, report) is called every few iterations. Raises CurvefoldError (pattern, net, handle)
-    before any folding; what goes wrong later is the result's ``status``.
+    before any folding, also where sides bind that the drawing contradicts itself about; what goes wrong later is
+    the result's ``status``.
     """
     description = description or FoldDescription()
+    if description.assignments == "bind" and pattern.conflicts:
+        raise PatternError(f"the drawing's sides cannot bind: {pattern.conflicts[0]}", notes=pattern.notes)
     begin = time.perf_counter()
     net = build_net(pattern, description.resolution, description.max_vertices)
     model = FoldModel(net, weights=description.weights)
