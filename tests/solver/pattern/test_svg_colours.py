@@ -43,6 +43,10 @@ from solver.pattern.svg_values import UNKNOWN_COLOUR, Colour, SvgValueError
         ("color(a98-rgb 0.8586 0 0)", "#ff0000"),
         ("color(prophoto-rgb 0.7022 0.2757 0.1035)", "#ff0000"),
         ("color(rec2020 0.792 0.231 0.0738)", "#ff0000"),
+        # White stays white under the other white point, and so do greys.
+        ("color(prophoto-rgb 1 1 1)", "#ffffff"),
+        ("color(xyz-d50 0.2064 0.2140 0.1765)", "#808080"),
+        ("color(prophoto-rgb 0.42467 0.42467 0.42467)", "#808080"),
         ("color(xyz 0.4124 0.2126 0.0193)", "#ff0000"),
         ("color(xyz-d50 0.4361 0.2225 0.0139)", "#ff0000"),
         ("color(display-p3 50% 50% 50% / 0.5)", "#808080"),

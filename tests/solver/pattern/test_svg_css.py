@@ -126,6 +126,11 @@ def test_custom_properties_do_not_explode() -> None:
     assert time.process_time() - start < 5
 
 
+def test_a_custom_property_too_long_for_any_value_stands_for_nothing() -> None:
+    read = drawing(PATH.format('stroke="var(--a)"'), f":root{{--a:{'x' * 20_000}}}")
+    assert read.shapes[0].stroke == UNKNOWN_COLOUR
+
+
 # ---- selectors
 
 TREE = (

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import io
+
 import pytest
 
 from solver.pattern.meaning import MAX_WORDS
+from solver.pattern.read_options import ReadOptions
+from solver.pattern.svg import NO_SIZE, read_svg
 from solver.pattern.svg_values import UNKNOWN_COLOUR
 from solver.pattern.svg_walk import Drawing, read_drawing
 from solver.pattern.svg_xml import parse_svg_tree
@@ -100,3 +104,23 @@ def test_a_shape_with_a_look_of_its_own_is_no_line_by_its_data(body: str) -> Non
     [shape] = drawing(body).shapes
     assert shape.stroke is None
     assert shape.filled
+
+
+@pytest.mark.parametrize(
+    ("size", "options", "noted"),
+    [
+        ('width="100" height="100"', None, True),
+        ('width="100px" height="100px"', None, True),
+        ('width="100%" height="100%"', ReadOptions(), True),
+        ("", ReadOptions(scale=2.0), True),
+        ("", ReadOptions(unit="cm"), False),  # the user has said it
+        ('width="100mm" height="100mm"', None, False),
+    ],
+)
+def test_a_drawing_without_a_physical_size_says_what_is_taken_for_a_unit(
+    size: str, options: ReadOptions | None, noted: bool
+) -> None:
+    body = '<rect width="100" height="100" fill="none" stroke="black"/><path d="M9 0v100" stroke="red"/>'
+    [pattern] = read_svg(io.StringIO(f'<svg {HEAD} viewBox="0 0 100 100" {size}>{body}</svg>'), options)
+    assert (NO_SIZE in pattern.notes) == noted
+    assert (pattern.unit_mm is None) == ("mm" not in size)
