@@ -1,4 +1,4 @@
-"""Large SVG files take time in proportion to their size: looks are computed once for all elements that share them."""
+"""Large SVG files take time in proportion to their size: looks are computed once for elements that share them."""
 
 from __future__ import annotations
 
