@@ -110,7 +110,7 @@ def first_bend(net: PiecewiseDog, at: FloatArray, heights: FloatArray, gaps: Flo
     size = max(float(np.ptp(along)), 1e-300)
     bow = 0.5 * along**2 / size
     place = 0.5 * ((at - net.flat.mean(axis=0)) @ way) ** 2 / size
-    up = (place - place.mean()) @ heights > _NO_WAY if len(at) else False
+    up = (place - bow.mean()) @ heights > _NO_WAY
     return np.asarray(bow if up else -bow)
 
 

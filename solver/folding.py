@@ -442,13 +442,12 @@ class FoldModel:
         self._wake()
 
     def _lies_down(self) -> bool:
-        """Bring back a sheet that its handles ask to be flat, or a blank one that nothing holds; whether it was.
+        """Bring a sheet back to flat that its handles ask to be nothing else; whether that was done.
 
         Flat is its least energy then, but the energy is of fourth order there and steps only creep towards it;
         a flap behind a crease near the border costs next to nothing.
         """
-        blank = not len(self.net.chain_crease)
-        if not (len(self._handles) or blank) or self._at_work or self._steps_down >= _MOST_STEPS_DOWN:
+        if not len(self._handles) or self._at_work or self._steps_down >= _MOST_STEPS_DOWN:
             return False
         x = self._state.x
         lying = laid_flat(self.net.flat, x, *self._handles.anchors())

@@ -11,6 +11,7 @@ import pytest
 
 import solver
 from solver.command_line import main
+from solver.first_fold import first_bend
 
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
 BLANK = "the drawing has no crease: the sheet is blank paper and bends by handles"
@@ -54,6 +55,24 @@ def test_a_square_pushed_together_in_its_plane_bows_that_way(way: tuple[float, f
         solver.CreasePattern(SQUARE), *(Handle(tuple(p), (*(middle + 0.8 * (p - middle)), 0.0)) for p in ends)
     )
     assert np.ptp(result.positions[:, 2]) > 0.15
+
+
+def test_the_first_bend_is_a_cylinder_across_the_way_in_which_the_handles_come_together() -> None:
+    net = solver.build_net(solver.CreasePattern([(0, 0), (2, 0), (2, 1), (0, 1)]))
+    x, y = net.flat.T
+    middle = net.flat.mean(axis=0)
+    at = middle + np.array([(0, -5.0), (0, 5.0)])
+    for gaps, along, across in (([[0, 8.0], [8.0, 0]], y, x), ([[0, 10.0], [10.0, 0]], x, y)):
+        offset = first_bend(net, at, np.zeros(2), np.array(gaps))
+        for value in np.unique(along):
+            assert np.ptp(offset[along == value]) < 1e-12
+        assert np.ptp(offset[across == across[0]]) > 0.1
+        assert offset[np.argmax(along)] < offset[np.argmin(np.abs(along - along.mean()))]
+    ends, inside = np.argmax(y), np.argmin(np.abs(y - y.mean()))
+    near = np.array([[0, 8.0], [8.0, 0]])
+    assert first_bend(net, at, np.array([2.0, 2.0]), near)[ends] > 0
+    assert first_bend(net, at, np.array([-2.0, -2.0]), near)[ends] < 0
+    assert first_bend(net, at, np.array([2.0, 2.0]), near)[inside] == pytest.approx(0.0, abs=0.01)
 
 
 def test_an_annulus_bends() -> None:
