@@ -51,8 +51,8 @@ def choose_resolution(pattern: CreasePattern, max_vertices: int = AUTO_VERTICES)
     """As many quads along the sheet's longer side as the drawing needs and ``max_vertices`` allow.
 
     Four cells fit across a typical piece of paper, two across the narrowest long one, and creases that cross have
-    room for lines of their own. Raises PatternError and NetError as ``build_net`` does, and NetError when the
-    fewest quads already need more vertices than there may be.
+    room for lines of their own. A drawing whose fewest quads already need more vertices gets these, and the
+    sentence says so. Raises PatternError and NetError as ``build_net`` does.
     """
     return choose_layout(pattern, max_vertices)[0]
 
@@ -70,7 +70,10 @@ def choose_layout(pattern: CreasePattern, max_vertices: int) -> tuple[Resolution
     wanted = min(max(need.quads for need in needs), RESOLUTIONS[1])
     least = min(max(RESOLUTIONS[0], int(np.ceil(across)), _room(drawing.arrangement, nominal)), RESOLUTIONS[1])
     quads, layout = _within(pattern, drawing.arrangement, nominal, wanted, least, max_vertices)
-    return Resolution(quads, _sentence(needs, quads, max_vertices)), layout
+    sentence = _sentence(needs, quads, max_vertices)
+    if layout is not None and (count := len(layout.topology.vertex_grid)) > max_vertices:
+        sentence = f"{sentence}; the drawing cannot have fewer quads, which need {count:,} vertices"
+    return Resolution(quads, sentence), layout
 
 
 @dataclass(frozen=True)
@@ -183,12 +186,8 @@ def _within(
         count = len(layout.topology.vertex_grid)
         if count <= budget:
             return quads, layout
-        if quads == least:
-            raise NetError(
-                f"the net needs {count:,} vertices even with {quads} quads along the longer side, more than the "
-                f"{budget:,} that may be used; allow more vertices, or set the resolution",
-                element="creases",
-            )
+        if quads == least:  # the drawing cannot have fewer, and is not refused for that
+            return quads, layout
         quads = largest(quads - 1, _TRIED * budget * estimate(quads) / count)
 
 
