@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from .description import AUTO, FoldDescription, read_description, read_handles
-from .errors import CurvefoldError
+from .errors import CurvefoldError, NetError, PatternError
 from .files.mesh_reading import read_mesh
 from .files.results import FOLD_NAME, write_results
 from .files.ruling_files import RULINGS_SVG
@@ -131,7 +131,8 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
         try:
             result = fold(pattern, description, _progress(stream))
         except CurvefoldError as error:
-            error = error.with_notes(pattern.notes)
+            if isinstance(error, PatternError | NetError):
+                error = error.with_notes(pattern.notes)
             source = _source(args, error.where.element or "")
             raise error.in_file(str(source)) if error.where.file is None else error from None
         write_results(result, folder, args.rulings)
@@ -176,7 +177,7 @@ def _refuse(error: CurvefoldError, stream: TextIO) -> int:
 
 
 def _print_notes(notes: Iterable[str], stream: TextIO) -> None:
-    for note in notes:
+    for note in dict.fromkeys(notes):
         print(f"note: {note}", file=stream)
 
 

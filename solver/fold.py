@@ -141,7 +141,7 @@ class FoldResult:
             "objective": self.last.objective,
             "creases": [_crease_report(self.pattern, m, k) for k in range(len(self.pattern.creases))],
             "findings": [finding.sentence for finding in self.findings],
-            "notes": [*self.pattern.notes, *self.net.notes],
+            "notes": list(dict.fromkeys((*self.pattern.notes, *self.net.notes))),
         }
 
     def _stretch_away(self) -> float:

@@ -12,7 +12,7 @@ from ..arrays import FloatArray
 from ..description import RESOLUTIONS
 from ..errors import NetError, PatternError
 from ..pattern.arrangement import CROSSING, Arrangement, arrange, sheet_polygon
-from ..pattern.crease_pattern import Crease, CreasePattern
+from ..pattern.crease_pattern import BLANK, Crease, CreasePattern
 from ..pattern.curves import sample_crease
 from .frame import NetFrame, border_direction
 from .grid import OrthogonalGrid, crossings_held, place_grid, snap_vertices
@@ -32,8 +32,6 @@ MAX_VERTICES = 100_000
 _MANY_POINTS, _SIMPLIFIED, _MAX_POINTS, _MAX_CREASES = 5_000, 1e-3, 20_000, 1_000
 #: Creases that cross more often are refused before they are cut; so many of their segments are looked at.
 _MAX_CROSSINGS, _CROSSING_SAMPLE = 20_000, 2_000
-#: What is said of a sheet without creases.
-BLANK = "the sheet is blank paper and bends by handles"
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,8 +21,8 @@ from .layout import Drawing, Layout, draw, lay_out, sheet_extent
 #: Cells across a typical piece of paper: with fewer a curved crease of it has no room to bend beside. Two across a
 #: narrow one: its crease points then have paper of their own on both sides.
 CELLS_TYPICAL, CELLS_NARROW = 4, 2
-#: Quads along the longer side that any sheet gets. With 24, closed creases and hairpins driven to 60 degrees stay up
-#: to ten degrees shallower (samples circle_in_square, hairpin, loop; ``python -m benchmarks.drawings``).
+#: Quads along the longer side that any sheet gets. With 24, closed creases and hairpins driven to 60 degrees are
+#: up to ten degrees shallower (circle_in_square, hairpin, loop; ``python -m benchmarks.drawings``).
 LEAST_QUADS = 32
 #: The drawing is measured in cells of the first number to the longer side, and as many to the width of a narrow
 #: sheet as the second, up to the third.

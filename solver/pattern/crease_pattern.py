@@ -14,6 +14,9 @@ from ..errors import PatternError
 #: FOLD's letters that a crease may carry (FOLD 1.2, edges_assignment).
 ASSIGNMENTS = ("M", "V", "F", "U")
 
+#: What is said of a sheet without creases.
+BLANK = "the sheet is blank paper and bends by handles"
+
 
 @dataclass(frozen=True, eq=False, init=False)
 class Crease:

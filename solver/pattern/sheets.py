@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from ..errors import PatternError
-from .crease_pattern import Crease, CreasePattern
+from .crease_pattern import BLANK, Crease, CreasePattern
 from .rings import JOIN, Ring, curve_line, curve_lines, outer_rings, touching_groups
 from .same_line import settle_same_lines
 from .segments import Curve
@@ -29,7 +29,7 @@ _LETTERS = {Role.MOUNTAIN: "M", Role.VALLEY: "V"}
 #: Strokes that say they are nothing to fold, and what becomes of what lies off the sheet.
 _NO_PART = frozenset({Role.ASIDE, Role.FACET})
 _BESIDE = "left out: beside the sheet"
-_NO_CREASE = "no crease is drawn on the sheet: it is blank paper, which handles can bend"
+_NO_CREASE = f"the drawing has no crease: {BLANK}"
 
 
 def make_patterns(lines: Lines, border: str) -> tuple[CreasePattern, ...]:

@@ -91,7 +91,7 @@ def test_the_ends_of_a_strip_come_together() -> None:
 
 
 def test_a_sheet_that_is_let_go_lies_down_flat() -> None:
-    net = solver.build_net(solver.CreasePattern(SQUARE))
+    net = solver.build_net(solver.CreasePattern(SQUARE), 24)
     model = solver.FoldModel(net)
     model.set_handles([Handle((0, 0.5), (0.1, 0.5, 0)), Handle((1, 0.5), (0.9, 0.5, 0))])
     model.advance(300)
