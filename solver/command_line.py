@@ -6,13 +6,13 @@ import argparse
 import json
 import os
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TextIO
 
 from .description import AUTO, FoldDescription, read_description, read_handles
-from .errors import CurvefoldError, NetError, PatternError
+from .errors import CurvefoldError
 from .files.mesh_reading import read_mesh
 from .files.results import FOLD_NAME, write_results
 from .files.ruling_files import RULINGS_SVG
@@ -123,24 +123,26 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
 
     args: pattern, out, and what ``add_fold_arguments`` added. on_result(result, folder) may write more.
     """
+    said: tuple[str, ...] = ()
     try:
         folder = Path(args.out)
         _check_apart(Path(args.pattern), folder)
         description = description_of(args)
         pattern = read_pattern(args.pattern, read_options_of(args))
+        # Before the fold, which may take long: whoever sees that the drawing was misread need not wait for it.
+        said = pattern.notes
+        _print_notes(said, stream)
         try:
             result = fold(pattern, description, _progress(stream))
         except CurvefoldError as error:
-            if isinstance(error, PatternError | NetError):
-                error = error.with_notes(pattern.notes)
             source = _source(args, error.where.element or "")
             raise error.in_file(str(source)) if error.where.file is None else error from None
         write_results(result, folder, args.rulings)
         if on_result is not None:
             on_result(result, folder)
     except CurvefoldError as error:
-        return _refuse(error, stream)
-    _print_notes((*pattern.notes, *result.net.notes), stream)
+        return _refuse(error, stream, said)
+    _print_notes(result.net.notes, stream)
     print(result.summary(), file=stream)
     return REACHED if result.status.ok else NOT_REACHED
 
@@ -169,9 +171,9 @@ def run_verify(args: argparse.Namespace, stream: TextIO) -> int:
     return REACHED if found.ok else NOT_REACHED
 
 
-def _refuse(error: CurvefoldError, stream: TextIO) -> int:
-    """What was decided before it went wrong, then what went wrong."""
-    _print_notes(error.notes, stream)
+def _refuse(error: CurvefoldError, stream: TextIO, said: Sequence[str] = ()) -> int:
+    """What was decided before it went wrong, apart from what is said already, then what went wrong."""
+    _print_notes((note for note in error.notes if note not in said), stream)
     print(in_words(error), file=stream)
     return BAD_INPUT
 

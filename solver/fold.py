@@ -29,8 +29,10 @@ from .verify import verify
 _REPORT_EVERY = 10
 #: A sheet thinner than this is flat, net units.
 _FLAT = 1e-6
-#: What creases are called that lie on a side, and how many of them a terminal is told.
-_SIDES, _MOST_SIDES = {"V": "valley", "M": "mountain", "U": "on no side"}, 12
+#: How many creases a terminal is told the sides of.
+_MOST_SIDES = 12
+#: The other side of one that a drawing gives.
+_OPPOSITE = {"V": "M", "M": "V"}
 #: Edges farther than this from every handle and joined point are away from them, net units.
 _AWAY = 3.0
 
@@ -104,9 +106,10 @@ class FoldResult:
         m = self.measurement
         lines = [
             self.detail,
-            f"{len(self.net.rest)} vertices, {len(self.net.patch_polygons)} patches, "
+            f"{len(self.net.rest)} vertices, {_count(len(self.net.patch_polygons), 'patch', 'patches')}, "
             f"{self.iterations} iterations, {self.seconds:.1f} s",
             *(_fold_lines(self.net, m) if len(m.crease) else []),
+            *self._turned_over(),
             f"stretch mean {m.stretch.mean():.1e}, max {m.stretch.max():.1e}; "
             f"DOG residual max {self.last.constraint:.1e}",
         ]
@@ -144,6 +147,23 @@ class FoldResult:
             "notes": list(dict.fromkeys((*self.pattern.notes, *self.net.notes))),
         }
 
+    def _turned_over(self) -> list[str]:
+        """What is said of creases that folded to the other side than they are drawn, where the drawing is free."""
+        if self.description.assignments == "bind":
+            return []
+        drawn = {k: crease.assignment for k, crease in enumerate(self.pattern.creases)}
+        sided = [k for k, side in drawn.items() if side in _OPPOSITE and self.measurement.side(k) in _OPPOSITE]
+        turned = [k for k in sided if self.measurement.side(k) == _OPPOSITE[drawn[k]]]
+        if not turned:
+            return []
+        if len(turned) == len(sided) and len(sided) > 1:
+            which = "all of them, as if the sheet were turned over"
+        else:
+            labels = [self.pattern.crease_label(k) for k in turned[:_MOST_SIDES]]
+            more = len(turned) - len(labels)
+            which = ", ".join([*labels, f"and {more} more"] if more else labels)
+        return [f"not on the side that is drawn: {which} (--assignments bind holds every crease to its side)"]
+
     def _stretch_away(self) -> float:
         """The largest stretch of an edge that is not near a point that is held."""
         net = self.net
@@ -161,13 +181,17 @@ class FoldResult:
 def _fold_lines(net: PiecewiseDog, m: Measurement) -> list[str]:
     """What a terminal is told of the creases."""
     low, median, high = fold_angle_quantiles(m)
-    sides = [f"{label} {_SIDES[m.side(k)]}" for k, label in enumerate(net.crease_labels[:_MOST_SIDES])]
+    sides = [f"{label} {m.side_in_words(k)}" for k, label in enumerate(net.crease_labels[:_MOST_SIDES])]
     more = len(net.crease_labels) - len(sides)
     return [
         f"fold angle {low:.0f}° – {median:.0f}° – {high:.0f}° (10 %, median, 90 %), "
         f"{m.folded_part:.1%} of the crease points folded",
         ", ".join([*sides, f"and {more} more"] if more else sides),
     ]
+
+
+def _count(number: int, one: str, many: str) -> str:
+    return f"{number} {one if number == 1 else many}"
 
 
 def fold_angle_quantiles(m: Measurement) -> tuple[float, float, float]:

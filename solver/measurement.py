@@ -19,6 +19,7 @@ _ONE_SIDED = 0.8
 #: A crease folded by less than this in the median is flat, degrees: a sheet that was laid down keeps traces of a
 #: side, which nobody sees and nobody wants locked.
 _FLAT = 0.1
+_SIDES = {"V": "valley", "M": "mountain"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +65,13 @@ class Measurement:
         if np.median(self.fold_angle[known]) < _FLAT:
             return "U"
         return "V" if sides.sum() > 0 else "M"
+
+    def side_in_words(self, crease: int) -> str:
+        """The same for a user: "valley", "mountain", or why it is neither."""
+        if (letter := self.side(crease)) in _SIDES:
+            return _SIDES[letter]
+        angles = self.fold_angle[(self.crease == crease) & np.isfinite(self.fold_angle)]
+        return "flat" if len(angles) == 0 or np.median(angles) < _FLAT else "partly valley and partly mountain"
 
 
 def measure(net: PiecewiseDog, positions: ArrayLike) -> Measurement:

@@ -109,9 +109,9 @@ class DrawingFiles:
             except solver.CurvefoldError as error:
                 self.refuse(error, beginning)
                 continue
-            if len(patterns) > 1:
-                self.tell([f"it has {len(patterns)} sheets"], beginning)
             self.tell(dict.fromkeys(note for pattern in patterns for note in pattern.notes), beginning)
+            if len(patterns) > 1:  # last, since only the last report stays in the status bar
+                self.tell([f"it has {len(patterns)} sheets"], beginning)
             found.append(patterns)
         return found
 

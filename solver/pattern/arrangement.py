@@ -145,6 +145,7 @@ def _trim(
     sheet: Polygon, lines: list[FloatArray], labels: list[str], tolerance: float, notes: list[str]
 ) -> list[tuple[FloatArray, int]]:
     parts: list[tuple[FloatArray, int]] = []
+    trimmed: list[str] = []
     # Runs along the border are border: keep only what is inside by a hair.
     border = sheet.boundary
     shapely.prepare(sheet)
@@ -159,12 +160,16 @@ def _trim(
             notes.append(f"{labels[k]} lies off the sheet and was left out")
             continue
         if line.length - length > tolerance:
-            notes.append(f"{labels[k]} sticks out of the sheet and was trimmed at the border")
+            trimmed.append(labels[k])
         along_border = border.buffer(1e-7 * tolerance)
         if line.intersects(border):
             inside = _lines_of(inside.difference(along_border)) if _overlaps(inside, border) else inside
         pieces = _rejoin(shapely.get_parts(inside), points)
         parts += [(drop_repeats(row), k) for row in _rows_of(pieces[shapely.length(pieces) >= tolerance])]
+    if len(trimmed) == 1:
+        notes.append(f"{trimmed[0]} sticks out of the sheet and was trimmed at the border")
+    elif trimmed:
+        notes.append(f"creases stick out of the sheet and were trimmed at the border: {_listed(trimmed)}")
     return parts
 
 

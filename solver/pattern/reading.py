@@ -49,7 +49,10 @@ def read_patterns(path: str | Path, options: ReadOptions | None = None) -> tuple
         pattern.named(f"{stem} {number}" if several else stem, options.unit_mm(pattern.unit_mm))
         for number, pattern in enumerate(patterns, 1)
     ]
-    return tuple(named) if options.sheet is None else (named[options.sheet - 1],)
+    if options.sheet is None:
+        return tuple(named)
+    chosen = named[options.sheet - 1]
+    return (chosen.noted(f"sheet {options.sheet} of {len(named)} in the file") if several else chosen,)
 
 
 def read_pattern(path: str | Path, options: ReadOptions | None = None) -> CreasePattern:

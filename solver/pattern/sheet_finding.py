@@ -93,13 +93,16 @@ def find_sheets(search: Search, border: str) -> Found:
         found = _drawn(search, reach)
         if found is not None:
             return found
-    found = _filled(search)
+    found = _filled(search, _objects(search))
     if found is not None:
         return found
     for reach in _REACHES[:2]:
         found = _outermost(search, reach)
         if found is not None:
             return found
+    found = _filled(search, search.filled)
+    if found is not None:
+        return found
     gap = _open_place(search)
     if gap is not None:
         x, y = gap.place.tolist()
@@ -260,15 +263,28 @@ def _found(rings: Sequence[Ring], frames: frozenset[int], explained: str) -> Fou
 # ---- no drawn outline
 
 
-def _filled(search: Search) -> Found | None:
+def _objects(search: Search) -> list[Sequence[FloatArray]]:
+    """The filled shapes without those that paint the whole page, as slides and artboards do."""
+    if search.page is None:
+        return list(search.filled)
+    page = shapely.box(*search.page).buffer(-search.tolerance)
+    areas = map(_painted, search.filled)
+    return [
+        shape
+        for shape, area in zip(search.filled, areas, strict=True)
+        if area is None or not shapely.covers(area, page)
+    ]
+
+
+def _filled(search: Search, shapes: Sequence[Sequence[FloatArray]]) -> Found | None:
     """The smallest filled shape that holds the creases, or the shapes that hold them together."""
     chosen = search.having(CREASE_ROLES) or search.having([Role.DARK, Role.PALE])
     lines = curve_lines(search.some(chosen))
-    if not len(lines) or not search.filled:
+    if not len(lines) or not shapes:
         return None
     total = float(shapely.length(lines).sum())
     tree = shapely.STRtree(lines)
-    areas = [area for area in map(_painted, search.filled) if area is not None and area.area > search.tolerance**2]
+    areas = [area for area in map(_painted, shapes) if area is not None and area.area > search.tolerance**2]
     held = [_length_inside(area.buffer(search.tolerance), lines, tree) / total for area in areas]
     single = [k for k, share in enumerate(held) if share >= _SHARE_NAMED]
     if single:

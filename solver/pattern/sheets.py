@@ -72,15 +72,13 @@ def _patterns(
         near.append(sorted({*tree.query(grown, predicate="intersects").tolist(), *ring.members} - found.frames))
         beside -= set(near[-1])
     apart = [_fated(strokes[i], i in found.frames) for i in sorted(beside)]
-    several = len(found.sheets) > 1
     patterns = []
     for number, (ring, mine) in enumerate(zip(found.sheets, near, strict=True), 1):
         local = {i: k for k, i in enumerate(mine)}
         own = replace(ring, members=frozenset(local[i] for i in ring.members))
-        told = [f"sheet {number} of {len(found.sheets)} in the file", *notes] if several else list(notes)
         sheet = _Sheet([strokes[i] for i in mine], size, marked)
         left_out = found.holes[number - 1] if found.holes else ()
-        patterns.append(sheet.pattern(own, left_out, lines, [] if number > 1 else apart, told, conflicts))
+        patterns.append(sheet.pattern(own, left_out, lines, [] if number > 1 else apart, notes, conflicts))
     return tuple(patterns)
 
 

@@ -23,7 +23,7 @@ def why_no_line(shapes: Iterable[Drawn]) -> str:
     thin = sum(_thinness(shape) < _THIN for shape in filled)
     count = "1 filled shape" if len(filled) == 1 else f"{len(filled)} filled shapes"
     if thin == 0:
-        return f"the drawing has no line: nothing in it is stroked, and it has only {count}"
+        return f"the drawing has no line: it has only {count}; give the border and the creases a stroke"
     if len(filled) == 1:
         those = f"its {count}, as thin as a line, was a stroke"
     else:

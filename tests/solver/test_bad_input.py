@@ -86,7 +86,6 @@ def test_unusable_input_is_refused_in_one_sentence_and_nothing_is_written(tmp_pa
     assert "Traceback" not in said
     *notes, sentence = said.splitlines()
     assert all(note.startswith("note: ") for note in notes), said
-    assert not notes or handle_file is None, said  # a handle is wrong whatever the drawing means
     for word in words:
         assert word in sentence, said
     assert sorted(p.name for p in tmp_path.iterdir()) == before

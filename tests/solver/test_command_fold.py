@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from solver import Crease, CreasePattern, PatternError, ReadOptions
+from solver import Crease, CreasePattern, PatternError, ReadOptions, command_line
 from solver.command_line import main
 from solver.pattern import reading
 
@@ -71,6 +71,13 @@ def test_of_several_sheets_the_first_is_folded_and_a_note_says_so(told: list[Rea
     assert code == 0
     assert report(tmp_path)["drawing"] == "a 1"
     assert "note: the file has 2 sheets: this is the first one" in said
+    assert "sheet 1 of 2" not in said
+
+
+def test_a_sheet_that_is_chosen_is_named(told: list[ReadOptions], tmp_path: Path) -> None:
+    _, said = run("a.svg", "--out", tmp_path, *QUICK, "--sheet", "2")
+    assert "note: sheet 2 of 2 in the file" in said
+    assert "the file has 2 sheets" not in said
 
 
 @pytest.mark.parametrize(
@@ -131,3 +138,23 @@ def test_a_drawing_that_is_read_and_cannot_carry_a_net_tells_its_notes_too(
     assert code == 2
     assert said.splitlines()[0] == "note: a line was left out"
     assert "quads are needed" in said.splitlines()[1]
+
+
+def test_what_was_read_is_said_before_the_fold_and_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    stream = io.StringIO()
+
+    def fold(*_: object) -> None:
+        assert stream.getvalue() == "note: a line was left out\n"
+        raise PatternError("it cannot be folded", notes=("a line was left out", "a side contradicts itself"))
+
+    def read(source: object, options: ReadOptions) -> tuple[CreasePattern, ...]:
+        return (CreasePattern(SQUARE, creases=[Crease(ARC)], notes=["a line was left out"]),)
+
+    monkeypatch.setitem(reading.READERS, ".svg", read)
+    monkeypatch.setattr(command_line, "fold", fold)
+    assert main(["fold", "a.svg", "--out", str(tmp_path / "out")], stream) == 2
+    assert stream.getvalue().splitlines() == [
+        "note: a line was left out",
+        "note: a side contradicts itself",
+        "a.svg: it cannot be folded",
+    ]

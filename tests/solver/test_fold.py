@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from types import ModuleType
 
 import numpy as np
@@ -96,6 +97,31 @@ def test_the_summary_says_how_it_went(drawings: ModuleType) -> None:
     text = result.summary()
     for words in ("vertices", "iterations", "fold angle", "stretch", "100.0%"):
         assert words in text
+
+
+@pytest.mark.parametrize(
+    ("drawn", "words"),
+    [
+        ("VM", ""),  # as it folds
+        ("UU", ""),
+        ("VV", "not on the side that is drawn: crease 2 ("),
+        ("UV", "not on the side that is drawn: crease 2 ("),
+        ("MV", "not on the side that is drawn: all of them, as if the sheet were turned over ("),
+    ],
+)
+def test_the_summary_names_the_creases_that_are_not_on_the_side_that_is_drawn(
+    drawings: ModuleType, drawn: str, words: str
+) -> None:
+    plain = drawings.two_arcs()
+    creases = [replace(c, assignment=letter) for c, letter in zip(plain.creases, drawn, strict=True)]
+    pattern = solver.CreasePattern(plain.boundary, plain.holes, creases)
+    text = solver.fold(pattern, solver.FoldDescription(resolution=9, angle=40.0)).summary()
+    assert "crease 1 valley, crease 2 mountain" in text
+    if words:
+        assert words in text
+        assert "--assignments bind" in text
+    else:
+        assert "drawn" not in text
 
 
 # --- another way ----------------------------------------------------------------------------------------

@@ -336,6 +336,16 @@ def test_what_was_mended_is_said(drawings: ModuleType) -> None:
     assert solver.build_net(drawings.one_arc(), 12).notes == ()
 
 
+def test_creases_that_stick_out_are_one_note() -> None:
+    square = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    creases = [solver.Crease([(-0.1, y), (1.1, y)]) for y in (0.2, 0.4, 0.6, 0.7, 0.8, 0.9)]
+    listed = "crease 1, crease 2, crease 3, crease 4 and 2 more"
+    (note,) = solver.build_net(solver.CreasePattern(square, creases=creases), 12).notes
+    assert note == f"creases stick out of the sheet and were trimmed at the border: {listed}"
+    (note,) = solver.build_net(solver.CreasePattern(square, creases=creases[:1]), 12).notes
+    assert note == "crease 1 sticks out of the sheet and was trimmed at the border"
+
+
 # --- any crease at all ----------------------------------------------------------------------------------
 
 spot = st.tuples(st.floats(-0.2, 1.2), st.floats(-0.2, 1.2))

@@ -472,6 +472,15 @@ def test_a_filled_shape_is_the_border_when_there_is_no_other() -> None:
     assert note(pattern, "filled shape")
 
 
+def test_a_painted_page_is_not_the_sheet_where_an_outline_of_a_colour_holds_the_creases() -> None:
+    slide = '<rect width="100" height="100" fill="#fff"/>'
+    outline = '<rect x="20" y="20" width="60" height="40" fill="#fff" stroke="#172c51"/>'
+    pattern = read(slide + outline + '<path d="M20 40h60" stroke="#f00"/>')
+    assert area(pattern) == 2400.0
+    assert letters(pattern) == "U"
+    assert note(pattern, "outermost closed outline")
+
+
 def test_a_frame_around_the_sheet_is_left_out() -> None:
     pattern = read(
         '<rect x="-20" y="-20" width="140" height="140" fill="none" stroke="black"/>'

@@ -32,7 +32,7 @@ def test_one_of_several_is_thin() -> None:
 
 def test_shapes_that_are_no_lines_are_not_called_thin() -> None:
     said = refusal('<rect width="100" height="100"/><circle r="9"/>')
-    assert "2 filled shapes" in said
+    assert "2 filled shapes; give the border and the creases a stroke" in said
     assert "as thin" not in said
 
 
