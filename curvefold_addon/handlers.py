@@ -7,7 +7,7 @@ from collections.abc import Callable
 import bpy
 from bpy.app.handlers import persistent
 
-from . import live
+from . import later_work, live
 
 _said: set[str] = set()
 
@@ -44,6 +44,11 @@ def playback_ended(*_: object) -> None:
 
 
 @_quiet
+def undo_begins(*_: object) -> None:
+    later_work.undo_begins()
+
+
+@_quiet
 def undone(*_: object) -> None:
     live.park()
 
@@ -69,6 +74,7 @@ _HANDLERS = (
     ("depsgraph_update_post", depsgraph_changed),
     ("frame_change_post", frame_changed),
     ("animation_playback_post", playback_ended),
+    ("undo_pre", undo_begins),
     ("undo_post", undone),
     ("redo_post", undone),
     ("load_pre", file_closes),

@@ -1,6 +1,7 @@
 """The operators, one a file."""
 
 from . import (
+    add_handle,
     add_handles,
     add_joint,
     add_sample,
@@ -39,6 +40,7 @@ _MODULES = (
     import_drawing,
     fold_drawing,
     make_paper,
+    add_handle,
     place_handle,
     add_handles,
     hook_object,

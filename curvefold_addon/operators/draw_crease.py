@@ -5,6 +5,7 @@ from typing import ClassVar
 import bpy
 from bpy.props import EnumProperty
 
+from .. import later_work
 from ..bridge import drawing, drawing_objects
 from ..drawing_context import NO_SHEET, active_sheet, select_only
 from ..properties import ASSIGNMENTS
@@ -31,6 +32,7 @@ class DrawCrease(bpy.types.Operator):
             return False
         return True
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         sheet = active_sheet(context)
         if context.mode != "OBJECT":

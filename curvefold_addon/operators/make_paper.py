@@ -6,7 +6,7 @@ import bpy
 from bpy.props import FloatProperty
 
 from ... import solver
-from .. import handle_making, live, paper_material
+from .. import handle_making, later_work, live, paper_material
 from ..bridge import drawing, papers, state
 from ..bridge.nets import choose
 from ..bridge.session import flat_session
@@ -38,6 +38,7 @@ class MakePaper(bpy.types.Operator):
             return False
         return True
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         sheet = active_sheet(context)
         if context.mode != "OBJECT":
