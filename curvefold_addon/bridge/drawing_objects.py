@@ -100,9 +100,14 @@ def is_crease(candidate: Any) -> bool:
     return bool(candidate.curvefold.role == CREASE)
 
 
-def sheet_of(crease: Any) -> Any:
-    """The sheet that an object lies on, directly or below other objects; None when there is none."""
-    node = crease.parent
+def is_part(candidate: Any) -> bool:
+    """Whether an object is a part of a drawing, sheet or crease."""
+    return is_sheet(candidate) or is_crease(candidate)
+
+
+def sheet_of(item: Any) -> Any:
+    """The sheet that an object is, or lies on, directly or below other objects; None when there is none."""
+    node = item
     while node is not None and not is_sheet(node):
         node = node.parent
     return node

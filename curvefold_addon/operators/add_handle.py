@@ -30,6 +30,8 @@ class AddHandle(OnPaper, bpy.types.Operator):
             paper = context.scene.objects.get(self.paper)
             if paper is None or paper.type != "MESH" or not paper.data.curvefold.is_paper:
                 return self.refuse(f"There is no paper {self.paper}")
+        if context.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
         at = tuple(self.at)
         point = SurfacePoint(at, live.make_session(paper).place_of(at))
         handle = handle_making.add_handle(paper, point)
