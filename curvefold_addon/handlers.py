@@ -7,7 +7,7 @@ from collections.abc import Callable
 import bpy
 from bpy.app.handlers import persistent
 
-from . import later_work, live
+from . import drawing_tool, later_work, live
 
 _said: set[str] = set()
 
@@ -31,6 +31,7 @@ def _quiet(handler: Callable[..., None]) -> Callable[..., None]:
 @_quiet
 def depsgraph_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     live.notice([update.id for update in depsgraph.updates])
+    drawing_tool.look()
 
 
 @_quiet
@@ -51,6 +52,7 @@ def undo_begins(*_: object) -> None:
 @_quiet
 def undone(*_: object) -> None:
     live.park()
+    drawing_tool.look()
 
 
 @_quiet
@@ -96,4 +98,5 @@ def unregister() -> None:
             handlers.remove(handler)
     if bpy.app.timers.is_registered(_enabled):
         bpy.app.timers.unregister(_enabled)
+    drawing_tool.forget()
     live.forget()

@@ -216,8 +216,8 @@ def active_paper(context: bpy.types.Context) -> bpy.types.Object | None:
         return _paper(next(iter(watch.papers))) if len(watch.papers) == 1 else None
     if active.type == "MESH" and active.data.curvefold.is_paper:
         return active
-    if is_part(active):
-        return next(iter(papers_on(sheet_of(active))), None)
+    if is_part(active) and (following := papers_on(sheet_of(active))):
+        return following[0]
     return next((_paper(uid) for uid in sorted(watch.movers.get(active.session_uid, ()))), None)
 
 

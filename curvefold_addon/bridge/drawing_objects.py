@@ -92,6 +92,16 @@ def show_assignment(crease: Any) -> None:
     slot.material = material
 
 
+def drop_dots(curve: Any) -> None:
+    """Removes the splines of one point from a Curve datablock that is not being edited: a click leaves one."""
+    if curve.is_editmode or curve.shape_keys is not None or not curve.is_editable:
+        return
+    for spline in list(curve.splines):
+        points = spline.bezier_points if spline.type == "BEZIER" else spline.points
+        if len(points) < 2:
+            curve.splines.remove(spline)
+
+
 def is_sheet(candidate: Any) -> bool:
     return bool(candidate.curvefold.role == SHEET)
 

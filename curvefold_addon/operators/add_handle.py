@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 from bpy.props import FloatVectorProperty, StringProperty
 
-from .. import handle_making, live
+from .. import drawing_tool, handle_making, live
 from ..bridge.surface_points import SurfacePoint
 from ..drawing_context import select_only
 from .on_paper import OnPaper
@@ -30,8 +30,7 @@ class AddHandle(OnPaper, bpy.types.Operator):
             paper = context.scene.objects.get(self.paper)
             if paper is None or paper.type != "MESH" or not paper.data.curvefold.is_paper:
                 return self.refuse(f"There is no paper {self.paper}")
-        if context.mode != "OBJECT":
-            bpy.ops.object.mode_set(mode="OBJECT")
+        drawing_tool.leave_edit_mode(context)
         at = tuple(self.at)
         point = SurfacePoint(at, live.make_session(paper).place_of(at))
         handle = handle_making.add_handle(paper, point)

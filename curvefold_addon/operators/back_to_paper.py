@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import bpy
 
-from .. import drawing_context
+from .. import drawing_context, drawing_tool
 from .on_paper import OnPaper
 
 
@@ -26,8 +26,7 @@ class BackToPaper(OnPaper, bpy.types.Operator):
         paper = drawing_context.meant_paper(context)
         if not paper.visible_get():
             return self.refuse(f"{paper.name} is hidden: show it to go on with it")
-        if context.mode != "OBJECT":
-            bpy.ops.object.mode_set(mode="OBJECT")
+        drawing_tool.leave_edit_mode(context)
         drawing_context.select_only(context, paper)
         return {"FINISHED"}
 

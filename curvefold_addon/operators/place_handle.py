@@ -6,7 +6,7 @@ import bpy
 from bpy_extras import view3d_utils
 
 from ... import solver
-from .. import live
+from .. import drawing_tool, live
 from ..bridge import surface_points
 from ..bridge.state import StateError
 from .on_paper import OnPaper
@@ -26,8 +26,7 @@ class PlaceHandle(OnPaper, bpy.types.Operator):
         if context.area is None or context.area.type != "VIEW_3D":
             self.report({"ERROR"}, "Handles are placed in a 3D view")
             return {"CANCELLED"}
-        if context.mode != "OBJECT":
-            bpy.ops.object.mode_set(mode="OBJECT")
+        drawing_tool.leave_edit_mode(context)
         self._paper = live.active_paper(context).name
         context.window.cursor_modal_set("CROSSHAIR")
         context.workspace.status_text_set(HELP)
