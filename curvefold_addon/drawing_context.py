@@ -23,11 +23,14 @@ def active_sheet(context: bpy.types.Context) -> bpy.types.Object | None:
 
 
 def _sheet_behind(item: bpy.types.Object) -> bpy.types.Object | None:
-    if drawing_objects.is_sheet(item):
-        return item
     if item.type == "MESH" and item.data.curvefold.is_paper:
         return item.data.curvefold.sheet
     return drawing_objects.sheet_of(item)
+
+
+def meant_paper(context: bpy.types.Context) -> bpy.types.Object | None:
+    """The active paper, else the first by name that follows the active sheet; None when there is none."""
+    return live.active_paper(context) or next(iter(live.papers_on(active_sheet(context))), None)
 
 
 def papers_of(sheet: bpy.types.Object) -> list[bpy.types.Mesh]:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import bpy
 from bpy.app.handlers import persistent
 
-from . import live
+from . import drawing_tool, later_work, live
 
 _said: set[str] = set()
 
@@ -31,6 +31,7 @@ def _quiet(handler: Callable[..., None]) -> Callable[..., None]:
 @_quiet
 def depsgraph_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     live.notice([update.id for update in depsgraph.updates])
+    drawing_tool.look()
 
 
 @_quiet
@@ -44,8 +45,14 @@ def playback_ended(*_: object) -> None:
 
 
 @_quiet
+def undo_begins(*_: object) -> None:
+    later_work.undo_begins()
+
+
+@_quiet
 def undone(*_: object) -> None:
     live.park()
+    drawing_tool.look()
 
 
 @_quiet
@@ -69,6 +76,7 @@ _HANDLERS = (
     ("depsgraph_update_post", depsgraph_changed),
     ("frame_change_post", frame_changed),
     ("animation_playback_post", playback_ended),
+    ("undo_pre", undo_begins),
     ("undo_post", undone),
     ("redo_post", undone),
     ("load_pre", file_closes),
@@ -90,4 +98,5 @@ def unregister() -> None:
             handlers.remove(handler)
     if bpy.app.timers.is_registered(_enabled):
         bpy.app.timers.unregister(_enabled)
+    drawing_tool.forget()
     live.forget()

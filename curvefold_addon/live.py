@@ -15,7 +15,7 @@ import bpy
 
 from .. import solver
 from .bridge import baking, controls, drawing, hooks, papers, state
-from .bridge.drawing_objects import creases_of
+from .bridge.drawing_objects import creases_of, is_part, sheet_of
 from .bridge.report import CreaseReport, Report, describe, describe_crease, describe_fault
 from .bridge.session import Session, carried_session, stored_session
 from .bridge.session import stop as stop_thread
@@ -207,8 +207,8 @@ def paper_of(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
 
 
 def active_paper(context: bpy.types.Context) -> bpy.types.Object | None:
-    """The paper that the user means: the active object, or the one that it pulls; where nothing is active, the only
-    one of the scene.
+    """The paper that the user means: the active object, the one that it pulls, or the first by name that follows it
+    when it is a sheet or a crease; where nothing is active, the only one of the scene.
     """
     active = context.active_object
     watch = _watched()
@@ -216,7 +216,17 @@ def active_paper(context: bpy.types.Context) -> bpy.types.Object | None:
         return _paper(next(iter(watch.papers))) if len(watch.papers) == 1 else None
     if active.type == "MESH" and active.data.curvefold.is_paper:
         return active
+    if is_part(active) and (following := papers_on(sheet_of(active))):
+        return following[0]
     return next((_paper(uid) for uid in sorted(watch.movers.get(active.session_uid, ()))), None)
+
+
+def papers_on(sheet: bpy.types.Object | None) -> list[bpy.types.Object]:
+    """The papers of the scene that follow a sheet's drawing, by name."""
+    if sheet is None:
+        return []
+    found = [_paper(uid) for uid in tuple(_watched().drawings.get(sheet.session_uid, ()))]
+    return sorted((paper for paper in found if paper is not None), key=lambda paper: paper.name)
 
 
 def is_playing() -> bool:

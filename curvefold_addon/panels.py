@@ -29,13 +29,18 @@ class MainPanel(Tab, bpy.types.Panel):
     bl_idname = "CURVEFOLD_PT_main"
 
     def draw(self, context: bpy.types.Context) -> None:
-        paper = live.active_paper(context)
-        if paper is not None:
+        paper, sheet = live.active_paper(context), drawing_context.active_sheet(context)
+        if paper is not None and not _is_drawing(context):
             _draw_standing(self.layout, context, paper)
-        elif drawing_context.active_sheet(context) is not None:
-            _draw_sheet(self.layout, context, drawing_context.active_sheet(context))
+        elif sheet is not None:
+            _draw_sheet(self.layout, context, sheet)
         else:
             _draw_beginning(self.layout, context)
+
+
+def _is_drawing(context: bpy.types.Context) -> bool:
+    """Whether the user is at a drawing, and not at a paper that follows it."""
+    return context.active_object is not None and drawing_objects.is_part(context.active_object)
 
 
 def _draw_beginning(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -57,9 +62,25 @@ def _draw_sheet(layout: bpy.types.UILayout, context: bpy.types.Context, sheet: b
         say(layout, context, wording.DRAWING, "INFO")
     elif not creases:
         say(layout, context, wording.NO_CREASE, "INFO")
+    followers = live.papers_on(sheet)
+    if followers:
+        _draw_followers(layout, context, followers)
+        return
     column = layout.column()
     column.scale_y = 1.5
     column.operator("curvefold.make_paper", icon="MOD_CLOTH")
+
+
+def _draw_followers(layout: bpy.types.UILayout, context: bpy.types.Context, papers: list[bpy.types.Object]) -> None:
+    """How the papers of a drawing stand that are there already."""
+    paper = drawing_context.meant_paper(context)
+    if len(papers) > 1:
+        layout.label(text=f"{paper.name}, one of {len(papers)} papers of this drawing")
+    _draw_standing(layout, context, paper)
+    column = layout.column()
+    column.scale_y = 1.5
+    column.operator("curvefold.back_to_paper", icon="LOOP_BACK")
+    layout.operator("curvefold.make_paper", text="Another Paper", icon="ADD")
 
 
 def _draw_drawing_tools(layout: bpy.types.UILayout, context: bpy.types.Context, sheet: bpy.types.Object) -> None:
@@ -175,7 +196,8 @@ class DrawingPanel(PaperPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         settings = live.active_paper(context).data.curvefold
         self.layout.prop(settings, "sheet", text="")
-        if settings.sheet is not None:
+        # With a part of the drawing active, the main panel has them.
+        if settings.sheet is not None and not _is_drawing(context):
             _draw_drawing_tools(self.layout, context, settings.sheet)
 
 

@@ -226,7 +226,7 @@ class _Reading:
         sheet = self._sheet
         if sheet.type != "CURVE":
             raise solver.PatternError("it is no longer a curve, so it has no border", element=sheet.name)
-        strands = self._strands(sheet, np.eye(4), "the sheet")
+        strands = self._strands(sheet, np.eye(4))
         if strands:
             self._size = float(np.ptp(_hull(strands)[:, :2], axis=0).max())
         if not self._size > 0.0:
@@ -275,7 +275,7 @@ class _Reading:
             return []
         self._check_modifiers(item)
         try:
-            strands = self._strands(item, matrix_on(self._sheet, item), "the crease")
+            strands = self._strands(item, matrix_on(self._sheet, item))
         except solver.PatternError as error:
             self.trouble(f"{error.message}, so it is left out", item, None)
             return []
@@ -329,13 +329,12 @@ class _Reading:
 
     # ---- both
 
-    def _strands(self, item: Any, matrix: Array, what: str) -> list[Strand]:
+    def _strands(self, item: Any, matrix: Array) -> list[Strand]:
         """The splines of an object that have a segment, in the sheet's coordinates. Raises PatternError."""
         strands = []
         for strand in shown_strands(item):
             if not len(strand.cubics):
-                self.trouble(f"a spline of {what} has fewer than two points and is left out", item, None)
-                continue
+                continue  # a click beside everything leaves a spline of one point, which is no line
             strand = strand.transformed(matrix)
             if not np.isfinite(strand.cubics).all():
                 raise solver.PatternError("a point of it is not finite", element=item.name)

@@ -92,6 +92,16 @@ def show_assignment(crease: Any) -> None:
     slot.material = material
 
 
+def drop_dots(curve: Any) -> None:
+    """Removes the splines of one point from a Curve datablock that is not being edited: a click leaves one."""
+    if curve.is_editmode or curve.shape_keys is not None or not curve.is_editable:
+        return
+    for spline in list(curve.splines):
+        points = spline.bezier_points if spline.type == "BEZIER" else spline.points
+        if len(points) < 2:
+            curve.splines.remove(spline)
+
+
 def is_sheet(candidate: Any) -> bool:
     return bool(candidate.curvefold.role == SHEET)
 
@@ -100,9 +110,14 @@ def is_crease(candidate: Any) -> bool:
     return bool(candidate.curvefold.role == CREASE)
 
 
-def sheet_of(crease: Any) -> Any:
-    """The sheet that an object lies on, directly or below other objects; None when there is none."""
-    node = crease.parent
+def is_part(candidate: Any) -> bool:
+    """Whether an object is a part of a drawing, sheet or crease."""
+    return is_sheet(candidate) or is_crease(candidate)
+
+
+def sheet_of(item: Any) -> Any:
+    """The sheet that an object is, or lies on, directly or below other objects; None when there is none."""
+    node = item
     while node is not None and not is_sheet(node):
         node = node.parent
     return node

@@ -1,10 +1,12 @@
 """The operators, one a file."""
 
 from . import (
+    add_handle,
     add_handles,
     add_joint,
     add_sample,
     add_sheet,
+    back_to_paper,
     bake,
     check_paper,
     crease_sides,
@@ -39,6 +41,8 @@ _MODULES = (
     import_drawing,
     fold_drawing,
     make_paper,
+    back_to_paper,
+    add_handle,
     place_handle,
     add_handles,
     hook_object,

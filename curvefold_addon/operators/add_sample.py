@@ -6,7 +6,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from ... import solver
-from .. import samples, wording
+from .. import later_work, samples, wording
 from ..drawing_context import in_object_mode
 from .import_drawing import add_at_cursor
 
@@ -28,6 +28,7 @@ class AddSample(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return in_object_mode(cls, context)
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:
             pattern = solver.read_pattern(samples.drawing(self.sample))

@@ -6,7 +6,7 @@ import bpy
 from bpy.props import EnumProperty, FloatProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
-from .. import looking
+from .. import later_work, looking
 from ..bridge import drawing_objects
 from ..drawing_context import in_object_mode
 
@@ -68,6 +68,7 @@ class AddSheet(bpy.types.Operator, AddObjectHelper):
         layout.prop(self, "location")
         layout.prop(self, "rotation")
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         unit = context.scene.unit_settings.scale_length
         if not self.properties.is_property_set("side"):

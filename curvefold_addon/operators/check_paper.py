@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ... import solver
-from .. import live
+from .. import later_work, live
 from ..bridge import mesh_check
 from ..bridge.state import StateError, is_stored
 from ..drawing_context import in_object_mode
@@ -25,6 +25,7 @@ class CheckPaper(bpy.types.Operator):
             return False
         return in_object_mode(cls, context)
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         item = _meant(context)
         try:

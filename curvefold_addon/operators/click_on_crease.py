@@ -5,7 +5,7 @@ from bpy_extras import view3d_utils
 from mathutils import Vector
 
 from ... import solver
-from .. import live
+from .. import drawing_tool, live
 from ..bridge import surface_points
 from ..bridge.state import StateError
 from .on_paper import OnPaper
@@ -23,8 +23,7 @@ class ClickOnCrease(OnPaper):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if context.area is None or context.area.type != "VIEW_3D":
             return self.refuse("Creases are clicked in a 3D view")
-        if context.mode != "OBJECT":
-            bpy.ops.object.mode_set(mode="OBJECT")
+        drawing_tool.leave_edit_mode(context)
         self._paper = live.active_paper(context).name
         context.window.cursor_modal_set(self.cursor)
         context.workspace.status_text_set(HELP)

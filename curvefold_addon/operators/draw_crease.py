@@ -5,11 +5,10 @@ from typing import ClassVar
 import bpy
 from bpy.props import EnumProperty
 
+from .. import drawing_tool, later_work
 from ..bridge import drawing, drawing_objects
 from ..drawing_context import NO_SHEET, active_sheet, select_only
 from ..properties import ASSIGNMENTS
-
-DRAW_TOOL = "builtin.draw"
 
 
 class DrawCrease(bpy.types.Operator):
@@ -31,10 +30,10 @@ class DrawCrease(bpy.types.Operator):
             return False
         return True
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         sheet = active_sheet(context)
-        if context.mode != "OBJECT":
-            bpy.ops.object.mode_set(mode="OBJECT")
+        drawing_tool.leave_edit_mode(context)
         # Drawing on a planar curve stays in its plane, from wherever it is seen; and its plane is the sheet's.
         curve = drawing_objects.new_curve("Crease")
         line = drawing_objects.LINE * drawing.sheet_size(sheet)
@@ -46,8 +45,7 @@ class DrawCrease(bpy.types.Operator):
             return {"CANCELLED"}
         select_only(context, crease)
         if not bpy.app.background:
-            bpy.ops.object.mode_set(mode="EDIT")
-            bpy.ops.wm.tool_set_by_id(name=DRAW_TOOL, space_type="VIEW_3D")
+            drawing_tool.begin(context, crease)
         return {"FINISHED"}
 
 

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import FloatProperty
 
 from ... import solver
-from .. import paper_material, wording
+from .. import later_work, paper_material, wording
 from ..bridge import drawing, mesh, papers
 from ..drawing_context import select_only
 from ..resolution_property import resolution_property, told
@@ -33,6 +33,7 @@ class FoldDrawing(DrawingFiles, bpy.types.Operator):
         max=pi,
     )
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         files = self.read_files()
         added = []

@@ -6,7 +6,7 @@ from typing import ClassVar
 import bpy
 
 from ... import solver
-from .. import looking
+from .. import later_work, looking
 from ..bridge import drawing
 from ..drawing_context import in_object_mode, select_only
 from .drawing_files import SUFFIXES, DrawingFiles
@@ -23,6 +23,7 @@ class ImportDrawing(DrawingFiles, bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return in_object_mode(cls, context)
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         files = self.read_files()
         if not files:

@@ -5,6 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ... import solver
+from .. import later_work
 from ..bridge import crease_making, drawing_objects, strokes
 from ..drawing_context import NO_SHEET, active_sheet, drawing_changed, in_object_mode, select_only
 
@@ -26,6 +27,7 @@ class MakeCrease(bpy.types.Operator):
             return False
         return in_object_mode(cls, context)
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         sheet = active_sheet(context)
         made = []

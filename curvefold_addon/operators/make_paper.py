@@ -6,7 +6,7 @@ import bpy
 from bpy.props import FloatProperty
 
 from ... import solver
-from .. import handle_making, live, paper_material
+from .. import drawing_tool, handle_making, later_work, live, paper_material
 from ..bridge import drawing, papers, state
 from ..bridge.nets import choose
 from ..bridge.session import flat_session
@@ -38,10 +38,10 @@ class MakePaper(bpy.types.Operator):
             return False
         return True
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         sheet = active_sheet(context)
-        if context.mode != "OBJECT":
-            bpy.ops.object.mode_set(mode="OBJECT")
+        drawing_tool.leave_edit_mode(context)
         try:
             chosen = choose(state.source_of(drawing.read_drawing(sheet), self.resolution))
             made = flat_session(chosen.source)

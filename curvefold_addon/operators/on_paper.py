@@ -3,7 +3,7 @@
 import bpy
 
 from ... import solver
-from .. import live
+from .. import later_work, live
 from ..bridge.state import StateError
 
 
@@ -17,6 +17,7 @@ class OnPaper:
             return False
         return True
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:
             return self.act(context, live.active_paper(context))

@@ -6,10 +6,9 @@ import bpy
 from bpy_extras import view3d_utils
 
 from ... import solver
-from .. import handle_making, live
+from .. import drawing_tool, live
 from ..bridge import surface_points
 from ..bridge.state import StateError
-from ..drawing_context import select_only
 from .on_paper import OnPaper
 
 HELP = "Click on the paper to place a handle, then drag it with G   |   Enter, Esc or right click: done"
@@ -20,15 +19,14 @@ class PlaceHandle(OnPaper, bpy.types.Operator):
 
     bl_idname = "curvefold.place_handle"
     bl_label = "Place Handles"
-    # Every click is an undo step of its own.
+    # Every click calls an operator with an undo step of its own, and that is the one that can be adjusted.
     bl_options: ClassVar[set[str]] = {"REGISTER"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if context.area is None or context.area.type != "VIEW_3D":
             self.report({"ERROR"}, "Handles are placed in a 3D view")
             return {"CANCELLED"}
-        if context.mode != "OBJECT":
-            bpy.ops.object.mode_set(mode="OBJECT")
+        drawing_tool.leave_edit_mode(context)
         self._paper = live.active_paper(context).name
         context.window.cursor_modal_set("CROSSHAIR")
         context.workspace.status_text_set(HELP)
@@ -70,23 +68,21 @@ class PlaceHandle(OnPaper, bpy.types.Operator):
                 self.report({"INFO"}, "There is no paper under the mouse")
         except (solver.CurvefoldError, StateError) as error:
             self.report({"ERROR"}, str(error))
-        else:
-            bpy.ops.ed.undo_push(message="Place Handle")
         return {"RUNNING_MODAL"}
 
 
 def place_along(context: bpy.types.Context, paper: bpy.types.Object, origin, direction) -> bpy.types.Object | None:
-    """A handle where a ray of the world first meets the paper, and its empty; None when it misses."""
+    """A handle where a ray of the world first meets the paper, and its empty; None when it misses.
+
+    Raises CurvefoldError, StateError.
+    """
     to_local = paper.matrix_world.inverted_safe()
     point = surface_points.under_ray(paper.data, to_local @ origin, to_local.to_3x3() @ direction)
     if point is None:
         return None
-    handle = handle_making.add_handle(paper, point)
-    empty = handle_making.new_empty(paper, handle.offset.copy(), handle.name)
-    handle_making.hook_to(handle, paper, empty)
-    select_only(context, empty)
-    handle_making.go_on(paper)
-    return empty
+    live.make_session(paper).place_of(point.at)  # what is wrong with the paper or the point is said here
+    bpy.ops.curvefold.add_handle("EXEC_DEFAULT", True, paper=paper.name, at=point.at)
+    return context.view_layer.objects.active
 
 
 def view_under(

@@ -5,6 +5,7 @@ from typing import ClassVar
 import bpy
 from bpy.props import EnumProperty
 
+from .. import later_work
 from ..bridge import drawing_objects
 from ..drawing_context import drawing_changed
 from ..properties import ASSIGNMENTS
@@ -26,6 +27,7 @@ class SetAssignment(bpy.types.Operator):
             return False
         return True
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         sheets = []
         for crease in _creases(context):

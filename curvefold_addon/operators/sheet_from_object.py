@@ -5,6 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ... import solver
+from .. import later_work
 from ..bridge import sheet_outline
 from ..drawing_context import in_object_mode, select_only
 
@@ -27,6 +28,7 @@ class SheetFromObject(bpy.types.Operator):
             return False
         return in_object_mode(cls, context)
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         active = context.active_object
         try:

@@ -479,6 +479,28 @@ def test_a_crease_that_is_left_out(drawing_module, square, add_crease, sentence)
     assert [crease.name for crease in drawing_module.read_drawing(square).creases] == ["Crease"]
 
 
+def test_a_spline_of_one_point_is_nothing(drawing_module, square, add_crease):
+    def fill(curve):
+        poly((0.1, 0.2))(curve)
+        arc(curve)
+        curve.splines.new("BEZIER")
+
+    poly((0.5, 0.5))(square.data)
+    add_crease(fill, "Clicked")
+    assert sentences(drawing_module, square) == []
+    assert [crease.name for crease in drawing_module.read_drawing(square).creases] == ["Clicked"]
+
+
+def test_a_crease_of_single_points_is_empty(drawing_module, square, add_crease):
+    def fill(curve):
+        poly((0.1, 0.2))(curve)
+        poly((0.3, 0.2))(curve)
+
+    add_crease(fill, "Clicked")
+    assert sentences(drawing_module, square) == ["Clicked: it is empty: draw a curve in it, or delete it"]
+    assert not drawing_module.read_drawing(square).creases
+
+
 def test_one_bad_spline_of_several(drawing_module, square, add_crease):
     def fill(curve):
         poly((5, 5), (6, 6))(curve)
@@ -487,7 +509,6 @@ def test_one_bad_spline_of_several(drawing_module, square, add_crease):
 
     add_crease(fill, "Three")
     assert sentences(drawing_module, square) == [
-        "Three: a spline of the crease has fewer than two points and is left out",
         "Three: part 1 lies off the sheet and is left out",
     ]
     assert [crease.name for crease in drawing_module.read_drawing(square).creases] == ["Three part 2"]

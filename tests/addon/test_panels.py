@@ -170,6 +170,94 @@ def test_a_paper_says_how_it_stands_and_has_its_slider(panels, extension, paper)
     assert len(shown(panels)) == 11
 
 
+def activate(item):
+    bpy.ops.object.select_all(action="DESELECT")
+    item.select_set(True)
+    bpy.context.view_layer.objects.active = item
+
+
+@pytest.mark.parametrize("part", ["sheet", "crease", "new crease", "crease being edited"])
+def test_at_a_drawing_the_paper_that_follows_it_is_shown_and_one_button_leads_back(panels, extension, paper, part):
+    sheet = paper.data.curvefold.sheet
+    if part == "new crease":
+        activate(sheet)
+        bpy.ops.curvefold.draw_crease()
+    else:
+        activate(sheet if part == "sheet" else sheet.children[0])
+    if part == "crease being edited":
+        bpy.ops.object.mode_set(mode="EDIT")
+    notes = drawn(panels.MainPanel)
+    assert extension("curvefold_addon.live").report(paper.data).sentence in said(notes)
+    assert notes["properties"] == ["fold", "live"]
+    assert "curvefold.draw_crease" in notes["operators"]
+    assert notes["operators"][-2:] == ["curvefold.back_to_paper", "curvefold.make_paper"]
+    assert {"HandlesPanel", "CreasesPanel", "AdvancedPanel"} <= shown(panels)
+    assert "curvefold.draw_crease" not in drawn(panels.DrawingPanel)["operators"], "once is enough"
+    assert bpy.ops.curvefold.back_to_paper() == {"FINISHED"}
+    assert bpy.context.mode == "OBJECT"
+    assert bpy.context.selected_objects == [bpy.context.active_object] == [paper]
+    assert "curvefold.make_paper" not in drawn(panels.MainPanel)["operators"]
+
+
+def test_a_trouble_of_the_paper_is_said_at_its_drawing(panels, extension, paper, cross_border):
+    sheet = paper.data.curvefold.sheet
+    cross_border(sheet)
+    live = extension("curvefold_addon.live")
+    live.rebuild(paper.data)
+    while live.tick(0.02):
+        pass
+    activate(sheet.children[0])
+    report = live.report(paper.data)
+    assert report.state == "trouble"
+    assert report.sentence in said(drawn(panels.MainPanel))
+
+
+def test_of_several_papers_of_a_drawing_the_first_by_name_is_shown(panels, paper):
+    sheet = paper.data.curvefold.sheet
+    activate(sheet)
+    bpy.ops.curvefold.make_paper(resolution=12)
+    other = bpy.context.active_object
+    assert other != paper
+    activate(sheet)
+    assert "Paper, one of 2 papers of this drawing" in drawn(panels.MainPanel)["texts"]
+    bpy.ops.curvefold.back_to_paper()
+    assert bpy.context.active_object == paper
+    bpy.data.objects.remove(paper)
+    activate(sheet)
+    bpy.ops.curvefold.back_to_paper()
+    assert bpy.context.active_object == other
+
+
+def test_a_drawing_that_no_paper_follows_is_offered_paper(panels, paper):
+    bpy.ops.curvefold.add_sheet()
+    assert "curvefold.make_paper" in drawn(panels.MainPanel)["operators"]
+    assert drawn(panels.MainPanel)["properties"] == []
+    assert not bpy.ops.curvefold.back_to_paper.poll()
+    sheet = paper.data.curvefold.sheet
+    bpy.data.objects.remove(paper)
+    activate(sheet)
+    assert drawn(panels.MainPanel)["operators"][-1] == "curvefold.make_paper"
+    assert not bpy.ops.curvefold.back_to_paper.poll()
+
+
+def test_beside_a_drawing_that_a_paper_follows_the_way_back_is_offered_too(panels, paper):
+    bpy.ops.object.camera_add()
+    notes = drawn(panels.MainPanel)
+    assert notes["operators"][-2:] == ["curvefold.back_to_paper", "curvefold.make_paper"]
+    assert shown(panels) == {"MainPanel", "OverlaysPanel"}, "a camera is no part of it"
+    assert bpy.ops.curvefold.back_to_paper() == {"FINISHED"}
+    assert bpy.context.active_object == paper
+
+
+def test_there_is_no_way_back_to_a_hidden_paper(paper):
+    activate(paper.data.curvefold.sheet.children[0])
+    bpy.ops.object.mode_set(mode="EDIT")
+    paper.hide_set(True)
+    with pytest.raises(RuntimeError, match="Paper is hidden: show it"):
+        bpy.ops.curvefold.back_to_paper()
+    assert bpy.context.mode == "EDIT_CURVE"
+
+
 def test_a_paper_whose_session_is_gone_is_drawn_too(panels, extension, wording, paper):
     live = extension("curvefold_addon.live")
     live.forget()
@@ -257,8 +345,9 @@ def test_rulings_and_gauss_image_are_offered_as_objects_or_it_says_why_there_are
     assert said(drawn(panels.OverlaysPanel)) == wording.NO_RULINGS_BAKED
     settings.rulings = False
     assert said(drawn(panels.OverlaysPanel)) == ""
-    paper.select_set(False)
-    bpy.context.view_layer.objects.active = bpy.data.objects[paper.data.curvefold.sheet.name]
+    bpy.context.view_layer.objects.active = paper.data.curvefold.sheet
+    assert drawn(panels.OverlaysPanel)["operators"] == offered, "those of the paper that follows the sheet"
+    bpy.ops.curvefold.add_sheet()
     assert drawn(panels.OverlaysPanel)["operators"] == []
 
 

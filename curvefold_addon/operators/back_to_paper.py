@@ -1,0 +1,39 @@
+"""From a drawing back to the paper that follows it."""
+
+from typing import ClassVar
+
+import bpy
+
+from .. import drawing_context, drawing_tool
+from .on_paper import OnPaper
+
+
+class BackToPaper(OnPaper, bpy.types.Operator):
+    """Select the paper that follows this drawing, and leave Edit Mode"""
+
+    bl_idname = "curvefold.back_to_paper"
+    bl_label = "Back to the Paper"
+    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if drawing_context.meant_paper(context) is None:
+            cls.poll_message_set("Select a sheet or a crease that a paper follows")
+            return False
+        return True
+
+    def act(self, context: bpy.types.Context, paper: bpy.types.Object | None) -> set[str]:
+        paper = drawing_context.meant_paper(context)
+        if not paper.visible_get():
+            return self.refuse(f"{paper.name} is hidden: show it to go on with it")
+        drawing_tool.leave_edit_mode(context)
+        drawing_context.select_only(context, paper)
+        return {"FINISHED"}
+
+
+def register() -> None:
+    bpy.utils.register_class(BackToPaper)
+
+
+def unregister() -> None:
+    bpy.utils.unregister_class(BackToPaper)
