@@ -118,7 +118,7 @@ def _draw_standing(layout: bpy.types.UILayout, context: bpy.types.Context, paper
     elif not settings.live:
         say(box, context, wording.NOT_LIVE, "PAUSE")
     elif settings.fold == 0.0 and not settings.handles:
-        say(box, context, wording.NEXT, "INFO")
+        say(box, context, wording.NEXT if settings.creases else wording.NEXT_BLANK, "INFO")
     column = layout.column()
     column.scale_y = 1.3
     column.prop(settings, "fold", slider=True)

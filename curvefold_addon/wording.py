@@ -3,6 +3,7 @@
 import re
 import textwrap
 
+from ..solver.measurement import FLAT_ANGLE
 from .bridge.report import CreaseReport, Report
 
 #: The solver numbers creases; in Blender they have names of their own.
@@ -19,6 +20,7 @@ NO_SHEET = "Start with a sheet of paper, a sample, or a drawing"
 NO_CREASE = "Draw creases on it: curves along which the paper folds"
 DRAWING = "Draw from border to border, or edit the points; Tab ends it"
 NEXT = "Slide Fold, or place handles and drag them"
+NEXT_BLANK = "Place handles and drag them"
 ASLEEP = "Asleep: it wakes when something moves"
 NOT_LIVE = "Not live: it stays as it is"
 KEYED = "Its shape keys hide how it folds: remove them"
@@ -40,9 +42,10 @@ def crease_name(report: CreaseReport) -> str:
 
 def crease(report: CreaseReport) -> str:
     """What became of a crease."""
-    if report.found not in ("M", "V"):
-        return SIDES["U"]
     angle = "" if report.fold_angle is None else f" {report.fold_angle:.0f}°"
+    if report.found not in ("M", "V"):
+        changes = report.folded and report.fold_angle is not None and report.fold_angle >= FLAT_ANGLE
+        return f"Changes sides{angle}" if changes else SIDES["U"]
     gaps = "" if report.folded else ", with gaps"
     return f"{SIDES[report.found]}{angle}{gaps}"
 

@@ -18,7 +18,8 @@ FLAT_TILT = 1e-6
 _ONE_SIDED = 0.8
 #: A crease folded by less than this in the median is flat, degrees: a sheet that was laid down keeps traces of a
 #: side, which nobody sees and nobody wants locked.
-_FLAT = 0.1
+FLAT_ANGLE = 0.1
+#: FOLD's letters of sides in words.
 _SIDES = {"V": "valley", "M": "mountain"}
 
 
@@ -62,7 +63,7 @@ class Measurement:
         sides = self.fold_sign[known]
         if len(sides) == 0 or abs(sides.sum()) < _ONE_SIDED * len(sides):
             return "U"
-        if np.median(self.fold_angle[known]) < _FLAT:
+        if np.median(self.fold_angle[known]) < FLAT_ANGLE:
             return "U"
         return "V" if sides.sum() > 0 else "M"
 
@@ -71,7 +72,7 @@ class Measurement:
         if (letter := self.side(crease)) in _SIDES:
             return _SIDES[letter]
         angles = self.fold_angle[(self.crease == crease) & np.isfinite(self.fold_angle)]
-        return "flat" if len(angles) == 0 or np.median(angles) < _FLAT else "partly valley and partly mountain"
+        return "flat" if len(angles) == 0 or np.median(angles) < FLAT_ANGLE else "partly valley and partly mountain"
 
 
 def measure(net: PiecewiseDog, positions: ArrayLike) -> Measurement:

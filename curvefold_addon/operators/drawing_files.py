@@ -50,7 +50,8 @@ class DrawingFiles:
     choices: ClassVar[tuple[str, ...]] = READING
 
     filepath: StringProperty(subtype="FILE_PATH", options={"SKIP_SAVE", "HIDDEN"})
-    directory: StringProperty(subtype="DIR_PATH", options={"SKIP_SAVE", "HIDDEN"})
+    #: Remembered, so that the dialog opens where the last drawing was.
+    directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN"})
     files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"SKIP_SAVE", "HIDDEN"})
     filter_glob: StringProperty(default=FILTER, options={"HIDDEN"})
     border: EnumProperty(

@@ -187,6 +187,15 @@ def test_a_sheet_that_cannot_be_folded_is_named_and_the_others_are(solver, told,
     assert [item.name for item in bpy.context.selected_objects] == ["b"]
 
 
+@pytest.mark.parametrize("name", OPERATORS)
+def test_the_dialog_opens_where_the_last_drawing_was(name):
+    properties = getattr(bpy.ops.curvefold, name).get_rna_type().properties
+    assert not properties["directory"].is_skip_save
+    # With these remembered, the next dialog would count as a drop of the same files.
+    assert properties["filepath"].is_skip_save
+    assert properties["files"].is_skip_save
+
+
 # --- what is said ---------------------------------------------------------------------------------------------
 
 
@@ -198,6 +207,8 @@ def test_every_note_is_reported_once(told, square, name, capfd):
     said = capfd.readouterr().out.splitlines()
     for note in ("it has 2 sheets", *notes):
         assert said.count(f"Info: {note}") == 1
+    infos = [line for line in said if line.startswith("Info: ")]
+    assert infos.index("Info: it has 2 sheets") == len(notes), "the last of them stays in the status bar"
 
 
 @pytest.mark.parametrize("name", OPERATORS)

@@ -280,6 +280,14 @@ def test_a_new_paper_says_what_to_do_with_it(panels, wording, paper):
     assert wording.NEXT not in said()
 
 
+def test_blank_paper_is_not_told_to_slide_what_folds_creases(panels, wording):
+    bpy.ops.curvefold.add_sheet()
+    bpy.ops.curvefold.make_paper(resolution=8)
+    said = " ".join(drawn(panels.MainPanel)["texts"])
+    assert wording.NEXT_BLANK in said
+    assert wording.NEXT not in said
+
+
 def test_a_paper_that_does_not_follow_says_so(panels, wording, paper):
     paper.data.curvefold.live = False
     assert wording.NOT_LIVE in " ".join(drawn(panels.MainPanel)["texts"])
@@ -385,6 +393,8 @@ def test_what_an_automatic_resolution_is_stands_below_it(panels, extension, pape
         ("M", 12.2, False, "Mountain 12°, with gaps"),
         ("M", None, True, "Mountain"),
         ("U", 3.0, False, "Not folded"),
+        ("U", 0.01, True, "Not folded"),
+        ("U", 60.0, True, "Changes sides 60°"),
     ],
 )
 def test_what_is_said_of_a_crease(wording, extension, found, angle, folded, text):

@@ -99,6 +99,15 @@ def test_the_summary_says_how_it_went(drawings: ModuleType) -> None:
         assert words in text
 
 
+def test_a_crease_on_neither_side_is_said_to_be_flat_or_to_change(drawings: ModuleType) -> None:
+    m = solver.fold(drawings.one_arc(), solver.FoldDescription(resolution=8, angle=30.0)).measurement
+    assert m.side_in_words(0) == "valley"
+    alternating = np.where(np.arange(len(m.fold_sign)) % 2, 1, -1)
+    assert replace(m, fold_sign=alternating).side_in_words(0) == "partly valley and partly mountain"
+    assert replace(m, fold_angle=np.zeros_like(m.fold_angle)).side_in_words(0) == "flat"
+    assert replace(m, fold_angle=np.full_like(m.fold_angle, np.nan)).side_in_words(0) == "flat"
+
+
 @pytest.mark.parametrize(
     ("drawn", "words"),
     [
