@@ -89,9 +89,9 @@ class Search:
 def find_sheets(search: Search, border: str) -> Found:
     """The sheets. border: "auto", "outline" or "page". Raises PatternError, with the place of an open border."""
     if border == "page":
-        found = _page(search, "the page is the sheet, as asked")
-        outlines = _outlines_on_page(search, found.sheets[0])
-        return replace(found, unused=dict.fromkeys(outlines, "an outline on the page, which is the sheet"))
+        page = _page(search, "the page is the sheet, as asked")
+        outlines = _outlines_on_page(search, page.sheets[0])
+        return replace(page, unused=dict.fromkeys(outlines, "an outline on the page, which is the sheet"))
     # A border that is open by a little is meant before what is painted behind it, and before its page.
     for reach in _REACHES:
         found = _drawn(search, reach)
