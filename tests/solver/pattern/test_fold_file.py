@@ -16,7 +16,7 @@ import shapely
 import solver
 from solver.command_line import main
 from solver.errors import CurvefoldError, PatternError, ReadError
-from solver.pattern import fold_file_frames
+from solver.pattern import fold_file_frames, fold_file_strokes
 from solver.pattern.crease_pattern import CreasePattern
 from solver.pattern.curves import sample_crease
 from solver.pattern.fold_file import read_fold
@@ -718,3 +718,11 @@ def test_frames_that_inherit_the_same_folded_form_are_looked_at_once(monkeypatch
     with pytest.raises(PatternError, match="only a folded form"):
         read({**stack([0.0, 0.5]), "file_frames": heirs})
     assert looked == [0]
+
+
+def test_lines_of_a_mesh_that_are_too_many_are_left_out_with_a_note(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a border they are candidates for it, as long as there are not too many."""
+    content = cross("VVMM", edges_assignment=[*"UUUUUUUU", *"VVFF"], faces_vertices=None)
+    assert not any("lines of a mesh" in note for note in read(content).notes)
+    monkeypatch.setattr(fold_file_strokes, "MAX_STROKES", 3)
+    assert any("2 edges left out: flat or joined, lines of a mesh" in note for note in read(content).notes)
