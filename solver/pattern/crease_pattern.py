@@ -114,7 +114,10 @@ class CreasePattern:
 
     def noted(self, note: str) -> CreasePattern:
         """The same drawing with one more note, the first."""
-        return CreasePattern(self.boundary, self.holes, self.creases, self.name, self.unit_mm, (note, *self.notes))
+        notes = (note, *self.notes)
+        return CreasePattern(
+            self.boundary, self.holes, self.creases, self.name, self.unit_mm, notes, self.conflicts
+        )
 
     def crease_label(self, index: int) -> str:
         """How messages call crease ``index``: its number from 1, and its name when it has one."""

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import shapely
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..errors import PatternError, ReadError
 from .fold_file_values import check_vertices, coordinates, index_rows
 
@@ -30,6 +30,10 @@ _FLAT = 1e-4
 _NO_WIDTH = 1e-6
 #: Faces are made smaller by this part of their root of area before they are said to lie on each other: rounding.
 _ROUNDING = 1e-6
+#: Shapes that are compared with all others at once: bounds the memory, not the result.
+_AT_ONCE = 64
+#: What says how a frame lies.
+_SHAPE = ("vertices_coords", "faces_vertices", "edges_vertices")
 #: How much of a file's words messages and notes repeat.
 _WORDS = 60
 
@@ -166,8 +170,14 @@ def choose_frame(file: FoldFile, folded_too: bool = True) -> Frame:
             return Frame(file, index, file.flat(index), _said(file, index))
         except (PatternError, ReadError) as error:
             refused.append(error)
+    tried: set[tuple[int, ...]] = set()
     for index in folded if folded_too else ():
         with contextlib.suppress(PatternError, ReadError):
+            # Many frames may inherit the same lists.
+            same = tuple(id(file.get(index, key)) for key in _SHAPE)
+            if same in tried:
+                continue
+            tried.add(same)
             flat = file.flat(index)
             if _lies_open(file, index, flat):
                 note = "the folded form lies flat with no part on another, and was read as the crease pattern"
@@ -193,18 +203,28 @@ def _lies_open(file: FoldFile, index: int, points: FloatArray) -> bool:
         polygons = polygons[areas > _NO_WIDTH * float(areas.mean())]
         return bool(shapely.is_valid(polygons).all()) and not _overlap(polygons)
     lines = shapely.linestrings(points[edges.vertices].reshape(-1, 2, 2))
-    return bool(len(lines)) and not len(shapely.STRtree(lines).query(lines, predicate="crosses")[0])
+    return bool(len(lines)) and all(not len(pairs[0]) for pairs in _pairs(lines, lines, "crosses"))
 
 
 def _overlap(polygons: Any) -> bool:
     """Whether any of the faces (F,) lie on each other. A face with another one amid it is one with a hole."""
     smaller = shapely.buffer(polygons, -_ROUNDING * np.sqrt(shapely.area(polygons)))
-    one, other = shapely.STRtree(polygons).query(smaller, predicate="intersects")
-    one, other = one[one != other], other[one != other]
-    apart = shapely.contains_properly(polygons[other], polygons[one]) | shapely.contains_properly(
-        polygons[one], polygons[other]
-    )
-    return not bool(apart.all())
+    for one, other in _pairs(polygons, smaller, "intersects"):
+        one, other = one[one != other], other[one != other]
+        apart = shapely.contains_properly(polygons[other], polygons[one]) | shapely.contains_properly(
+            polygons[one], polygons[other]
+        )
+        if not apart.all():
+            return True
+    return False
+
+
+def _pairs(shapes: Any, others: Any, predicate: str) -> Iterator[tuple[IntArray, IntArray]]:
+    """Index pairs of ``others`` and what they meet of ``shapes``, a few at a time: the first may be enough."""
+    tree = shapely.STRtree(shapes)
+    for start in range(0, len(others), _AT_ONCE):
+        one, other = tree.query(others[start : start + _AT_ONCE], predicate=predicate)
+        yield one + start, other
 
 
 def _said(file: FoldFile, index: int) -> tuple[str, ...]:

@@ -36,10 +36,10 @@ def lines_of(graph: EdgeGraph, unit_mm: float | None, notes: tuple[str, ...]) ->
     strokes = [*_edges(graph, "B"), *_edges(graph, "C"), *_creases(graph)]
     mesh = int(np.isin(graph.letter, ("F", "J")).sum())
     # Lines of a mesh fold nothing, and may be many. They matter where no line is the border.
-    if mesh and (graph.letter == "B").any():
+    if mesh and ((graph.letter == "B").any() or len(strokes) + mesh > MAX_STROKES):
         edges = "1 edge" if mesh == 1 else f"{mesh:,} edges"
         notes = (*notes, f"{edges} left out: flat or joined, lines of a mesh and no creases")
-    elif len(strokes) + mesh <= MAX_STROKES:
+    else:
         strokes += [*_edges(graph, "F"), *_edges(graph, "J")]
     if len(strokes) > MAX_STROKES:
         raise PatternError(f"the drawing has more than {MAX_STROKES:,} lines", notes=notes)

@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 from ..arrays import BoolArray, FloatArray
 from .chains import Path, joined_smoothly, walked, without_straight
 from .curves import CORNER
-from .rings import JOIN, meeting_places
+from .rings import JOIN, curve_lines, lines_at, meeting_places
 from .segments import STRAIGHT, Curve
 from .stroke import CREASE_ROLES, Decision, Role, Stroke
 
@@ -126,9 +126,9 @@ def _joined_dashes(strokes: Sequence[Stroke], size: float) -> list[Stroke]:
     open_ = [k for k, stroke in enumerate(strokes) if not stroke.curve.closed]
     if len(open_) < _LEAST_DASHES:
         return list(strokes)
-    ends = np.array([strokes[k].curve.points[[0, -1]] for k in open_])
-    label = meeting_places(ends.reshape(-1, 2), JOIN * size)
-    alone = (np.bincount(label)[label] == 1).reshape(-1, 2)
+    ends = np.vstack([strokes[k].curve.points[[0, -1]] for k in open_])
+    lines = curve_lines([stroke.curve for stroke in strokes])
+    alone = (lines_at(lines, ends, JOIN * size) == 1).reshape(-1, 2)
     free = dict(zip(open_, alone, strict=True))
     groups: dict[tuple[Role, str], list[int]] = defaultdict(list)
     for k in open_:
@@ -139,7 +139,8 @@ def _joined_dashes(strokes: Sequence[Stroke], size: float) -> list[Stroke]:
     for members in groups.values():
         if len(members) < _LEAST_DASHES:
             continue
-        for row in _rows_of_dashes([strokes[k].curve for k in members], np.array([free[k] for k in members]), size):
+        free_ends = np.array([free[k] for k in members])
+        for row, closed in _rows_of_dashes([strokes[k].curve for k in members], free_ends, size):
             which = [members[k] for k, _ in row]
             curves = [
                 strokes[k].curve if ahead else _reversed(strokes[k].curve)
@@ -150,15 +151,18 @@ def _joined_dashes(strokes: Sequence[Stroke], size: float) -> list[Stroke]:
                 del result[k]
             result[first] = replace(
                 strokes[first],
-                curve=_through_dashes(curves),
+                curve=_through_dashes(curves, closed),
                 decision=_dashed(strokes[first].decision, [length_of(curve) for curve in curves]),
                 count=sum(strokes[k].count for k in which),
             )
     return [result[k] for k in sorted(result)]
 
 
-def _rows_of_dashes(curves: Sequence[Curve], free: BoolArray, size: float) -> list[list[tuple[int, bool]]]:
-    """Which curves stand in a row with regular gaps, in its order, and whether each runs along with it.
+def _rows_of_dashes(
+    curves: Sequence[Curve], free: BoolArray, size: float
+) -> list[tuple[list[tuple[int, bool]], bool]]:
+    """Which curves stand in a row with regular gaps, in its order, and whether each runs along with it; and whether
+    the row closes.
 
     free (C,2): which ends no other line meets, for there is nothing in a gap
     """
@@ -183,7 +187,7 @@ def _rows_of_dashes(curves: Sequence[Curve], free: BoolArray, size: float) -> li
     best[one[order]] = other[order]
     partner = np.where((best >= 0) & (best[best] == np.arange(len(ends))), best, -1)
     paths = walked(np.arange(len(ends)).reshape(-1, 2), partner)
-    return [row for path in paths if (row := _row(path, ends, lengths))]
+    return [(row, path.closed) for path in paths if (row := _row(path, ends, lengths))]
 
 
 def _row(path: Path, ends: FloatArray, lengths: FloatArray) -> list[tuple[int, bool]]:
@@ -218,15 +222,15 @@ def _dashed(decision: Decision, lengths: list[float]) -> Decision:
     return Decision(role, "dash pattern", detail)
 
 
-def _through_dashes(curves: Sequence[Curve]) -> Curve:
-    """A curve through the dashes: its ends, and the middle of each."""
+def _through_dashes(curves: Sequence[Curve], closed: bool) -> Curve:
+    """A curve through the middles of dashes, and the ends of an open row."""
     rows = []
     for curve in curves:
         along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(curve.points, axis=0).T))])
         middle = 0.5 * along[-1]
         rows.append([np.interp(middle, along, curve.points[:, 0]), np.interp(middle, along, curve.points[:, 1])])
-    points = np.vstack([curves[0].points[:1], rows, curves[-1].points[-1:]])
-    return Curve(without_straight(points, False), False, None)
+    points = np.array(rows) if closed else np.vstack([curves[0].points[:1], rows, curves[-1].points[-1:]])
+    return Curve(without_straight(points, closed), closed, None)
 
 
 def length_of(curve: Curve) -> float:

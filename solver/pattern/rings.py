@@ -78,11 +78,14 @@ def outer_rings(curves: Sequence[Curve], indices: Sequence[int], size: float, re
     union = shapely.coverage_union_all(faces)
     areas = [part for part in shapely.get_parts(union) if isinstance(part, shapely.Polygon)]
     original = {tuple(point) for point in shapely.get_coordinates(lines).tolist()}
+    tree, owners = shapely.STRtree(lines), list(rows)
     rings = []
     for area in areas:
         exterior = shapely.get_coordinates(area.exterior)[:-1]
         polygon = shapely.Polygon(exterior)
-        members = _members(rows, polygon, tolerance)
+        # The lines that lie on the exterior over their whole length.
+        band = polygon.exterior.buffer(2.0 * tolerance)
+        members = frozenset(owners[k] for k in tree.query(band, predicate="covers").tolist())
         rings.append(
             Ring(
                 _ring_points(curves, members, polygon, original, size),
@@ -231,14 +234,6 @@ def near_pairs(tree: shapely.STRtree, lines: Geometries, distance: float) -> tup
     return first, second
 
 
-def _members(rows: dict[int, FloatArray], polygon: shapely.Polygon, tolerance: float) -> frozenset[int]:
-    """The lines that lie on the polygon's exterior over their whole length."""
-    lines = line_strings(list(rows.values()))
-    band = polygon.exterior.buffer(2.0 * tolerance)
-    shapely.prepare(band)
-    return frozenset(i for i, inside in zip(rows, shapely.covers(band, lines), strict=True) if inside)
-
-
 def _ring_points(
     curves: Sequence[Curve],
     members: frozenset[int],
@@ -272,6 +267,16 @@ def curve_lines(curves: Sequence[Curve]) -> Geometries:
     """The curves as lines (N,), closed ones with their first point repeated."""
     rows = [np.vstack([c.points, c.points[:1]]) if c.closed else c.points for c in curves]
     return line_strings(rows)
+
+
+def lines_at(lines: Geometries, points: FloatArray, tolerance: float) -> IntArray:
+    """(N,) how many of the lines pass within ``tolerance`` of each point (N,2)."""
+    tree, places = shapely.STRtree(lines), shapely.points(points)
+    counts = np.zeros(len(places), dtype=np.int64)
+    for start in range(0, len(places), _CHUNK):
+        near = tree.query(places[start : start + _CHUNK], predicate="dwithin", distance=tolerance)[0]
+        counts[start : start + _CHUNK] = np.bincount(near, minlength=len(places[start : start + _CHUNK]))
+    return counts
 
 
 def share_inside(polygon: shapely.Polygon, curves: Sequence[Curve], tolerance: float) -> float:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 import shapely
 
-from .rings import curve_lines, near_pairs
+from ..arrays import FloatArray, IntArray
+from .rings import Geometries, curve_lines, near_pairs
 from .stroke import Decision, Role, Stroke
 
 #: Lines of these roles may be the same crease.
@@ -45,9 +46,8 @@ def settle_same_lines(strokes: Sequence[Stroke], tolerance: float) -> tuple[list
     lines = curve_lines([strokes[k].curve for k in creases])
     middles = shapely.line_interpolate_point(lines, 0.5, normalized=True)
     first, second = near_pairs(shapely.STRtree(lines), middles, _NEAR * tolerance) if len(lines) else ((), ())
-    for a, b in zip(np.array(first).tolist(), np.array(second).tolist(), strict=True):
-        # Each pair once, the later line against the earlier one.
-        if a <= b or a in dropped or b in dropped or not _same(lines[a], lines[b], tolerance):
+    for a, b in _alike(lines, np.array(first, dtype=np.int64), np.array(second, dtype=np.int64), tolerance):
+        if a in dropped or b in dropped or not _same(lines[a], lines[b], tolerance):
             continue
         one, other = creases[b], creases[a]
         dropped.add(a)
@@ -72,13 +72,32 @@ def settle_same_lines(strokes: Sequence[Stroke], tolerance: float) -> tuple[list
 def _twice(copies: int) -> list[str]:
     if not copies:
         return []
-    return [f"{'1 line was' if copies == 1 else f'{copies:,} lines were'} drawn twice and count once"]
+    if copies == 1:
+        return ["1 line was drawn twice and counts once"]
+    return [f"{copies:,} lines were drawn twice and count once"]
+
+
+def _alike(lines: Geometries, first: IntArray, second: IntArray, tolerance: float) -> Iterator[tuple[int, int]]:
+    """The pairs that may be the same line, each once, the later line first: of a length, and ends on each other."""
+    later = first > second
+    a, b = first[later], second[later]
+    lengths = shapely.length(lines)
+    alike = np.abs(lengths[a] - lengths[b]) <= _most_longer(lengths[a], tolerance)
+    for place in (0, -1):
+        a, b = a[alike], b[alike]
+        ends = shapely.get_point(lines, place)
+        alike = shapely.dwithin(ends[a], lines[b], _NEAR * tolerance)
+        alike &= shapely.dwithin(ends[b], lines[a], _NEAR * tolerance)
+    return zip(a[alike].tolist(), b[alike].tolist(), strict=True)
+
+
+def _most_longer(length: FloatArray, tolerance: float) -> FloatArray:
+    """How much longer or shorter than a line of this length one is that may be the same."""
+    return 4.0 * _NEAR * tolerance + 0.01 * length
 
 
 def _same(one: shapely.LineString, other: shapely.LineString, tolerance: float) -> bool:
     """Whether two lines cover each other."""
-    if abs(one.length - other.length) > 4.0 * _NEAR * tolerance + 0.01 * one.length:
-        return False
     return bool(
         shapely.covers(one.buffer(_NEAR * tolerance), other)
         and shapely.covers(other.buffer(_NEAR * tolerance), one)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
@@ -24,6 +24,8 @@ _SHARE_ANY = 0.95
 _SHARE_APART = 0.3
 #: An outline inside another one that holds this share of the creases is the sheet, and the outer one a frame.
 _SHARE_FRAMED = 0.99
+#: Frames with several outlines in them that are looked through one in the other; real drawings have two at most.
+_MOST_NESTED = 10
 #: How far ends of a border may be apart, parts of the drawing's longer side: as near as ends are joined anyway, as
 #: far as ends of creases are snapped, and where nothing else closes in steps up to what nobody draws as a gap.
 _REACHES = (JOIN, 2e-3, 5e-3, 1e-2, 2e-2)
@@ -39,13 +41,13 @@ MAX_SHEETS = 500
 class Found:
     """The sheets of a drawing, in the order of the strokes that they are made of.
 
-    frames  indices of strokes that are frames around sheets
+    unused  strokes that are outlines of no sheet: index -> what each is
     holes   of each sheet that is a filled shape, what the shape leaves out; empty where sheets are drawn
     notes   why these are the sheets
     """
 
     sheets: tuple[Ring, ...]
-    frames: frozenset[int] = frozenset()
+    unused: Mapping[int, str] = field(default_factory=dict)
     holes: tuple[tuple[Ring, ...], ...] = ()
     notes: tuple[str, ...] = ()
 
@@ -87,7 +89,9 @@ class Search:
 def find_sheets(search: Search, border: str) -> Found:
     """The sheets. border: "auto", "outline" or "page". Raises PatternError, with the place of an open border."""
     if border == "page":
-        return _page(search, "the page is the sheet, as asked")
+        page = _page(search, "the page is the sheet, as asked")
+        outlines = _outlines_on_page(search, page.sheets[0])
+        return replace(page, unused=dict.fromkeys(outlines, "an outline on the page, which is the sheet"))
     # A border that is open by a little is meant before what is painted behind it, and before its page.
     for reach in _REACHES:
         found = _drawn(search, reach)
@@ -144,7 +148,7 @@ def _drawn(search: Search, reach: float) -> Found | None:
             frames: frozenset[int] = frozenset()
             if candidates is not edges:
                 rings, frames = _without_frames(search, rings, candidates)
-            return _found(rings, frames, explained)
+            return _found(rings, explained, dict.fromkeys(frames, "a frame around the sheet"))
     return None
 
 
@@ -159,7 +163,7 @@ def _outermost(search: Search, reach: float) -> Found | None:
         # A closed crease that holds nothing is no sheet if there is a page for it to be drawn on.
         alone = search.marked and search.page is not None and len(on_rings) == len(candidates) + len(told)
         if rings and not alone:
-            return _found(rings, frozenset(), explained)
+            return _found(rings, explained)
     return None
 
 
@@ -207,57 +211,96 @@ def _without_frames(
     search: Search, rings: list[Ring], candidates: Sequence[int]
 ) -> tuple[list[Ring], frozenset[int]]:
     """The innermost outlines that still hold all marked creases: whatever is around them is a frame."""
-    creases = search.having(CREASE_ROLES)
-    if not creases:
+    creases = np.array(search.having(CREASE_ROLES), dtype=np.int64)
+    if not len(creases):
         return rings, frozenset()
     lines = curve_lines(search.some(creases))
+    tree = shapely.STRtree(curve_lines(search.some(candidates)))
     kept: list[Ring] = []
     frames: set[int] = set()
-    waiting = list(reversed(rings))
+    waiting = [(ring, 0) for ring in reversed(rings)]
     while waiting:
-        ring = waiting.pop()
-        rest = [i for i in candidates if i not in ring.members and i not in frames]
-        mine = np.array(creases)[shapely.intersects(ring.polygon, lines)].tolist()
-        inner = next((found for reach in _REACHES if (found := _inside(search, ring, rest, mine, reach))), [])
-        if inner:
-            frames |= ring.members
-            waiting.extend(reversed(inner))
+        ring, depth = waiting.pop()
+        around = ring.members | frames
+        near = np.sort(tree.query(ring.polygon, predicate="intersects")).tolist()
+        rest = [candidates[k] for k in near if candidates[k] not in around]
+        mine = lines[shapely.intersects(ring.polygon, lines)]
+        for reach in _REACHES if rest and depth < _MOST_NESTED else ():
+            inner, others = _innermost(search, rest, mine, _SHARE_FRAMED, reach, ring)
+            if inner:
+                frames |= ring.members | others
+                waiting.extend((one, depth + 1) for one in reversed(inner))
+                break
         else:
             kept.append(ring)
     return kept, frozenset(frames)
 
 
-def _inside(search: Search, sheet: Ring, rest: Sequence[int], creases: Sequence[int], reach: float) -> list[Ring]:
-    """The outlines apart from ``sheet`` inside it that hold all of its creases together."""
-    lines = curve_lines(search.some(creases))
+def _innermost(
+    search: Search, candidates: Sequence[int], lines: Geometries, share: float, reach: float, sheet: Ring
+) -> tuple[list[Ring], frozenset[int]]:
+    """Outlines inside ``sheet`` that hold ``share`` of ``lines``, and the strokes of those around them.
+
+    The smallest one that holds as much alone, or else the outermost ones that do together.
+    """
     if not len(lines):
-        return []
+        return [], frozenset()
     tree = shapely.STRtree(lines)
-    rings = []
-    for group in touching_groups(search.curves, rest, reach * search.size):
+    enough = share * float(shapely.length(lines).sum())
+    held: list[tuple[Ring, float]] = []
+    for group in touching_groups(search.curves, candidates, reach * search.size):
         box = shapely.box(*shapely.total_bounds(curve_lines(search.some(group))))
         if not len(tree.query(box)):
             continue
-        rings += [
-            ring
-            for ring in outer_rings(search.curves, group, search.size, reach)
-            if ring.polygon.area < sheet.polygon.area
-            and shapely.distance(ring.polygon.exterior, sheet.polygon.exterior) > search.tolerance
-        ]
-    held = [_length_inside(ring.polygon.buffer(search.tolerance), lines, tree) for ring in rings]
-    if sum(held) < _SHARE_FRAMED * float(shapely.length(lines).sum()):
-        return []
-    return [ring for ring, length in zip(rings, held, strict=True) if length > search.tolerance]
+        for ring in outer_rings(search.curves, group, search.size, reach):
+            apart = shapely.distance(ring.polygon.exterior, sheet.polygon.exterior) > search.tolerance
+            if ring.polygon.area < sheet.polygon.area and apart:
+                held.append((ring, _length_inside(ring.polygon.buffer(search.tolerance), lines, tree)))
+    alone = sorted((ring for ring, length in held if length >= enough), key=lambda ring: ring.polygon.area)
+    if alone:
+        return alone[:1], frozenset().union(*(ring.members for ring in alone[1:])) - alone[0].members
+    rings = _outermost_of([ring for ring, length in held if length > search.tolerance])
+    outermost = set(rings)
+    total = sum(length for ring, length in held if ring in outermost)
+    return (rings if total >= enough else []), frozenset()
 
 
-def _found(rings: Sequence[Ring], frames: frozenset[int], explained: str) -> Found:
+def _outermost_of(rings: Sequence[Ring]) -> list[Ring]:
+    """Those of outlines that do not cross each other which are inside none of the others, largest first."""
+    kept: list[Ring] = []
+    for ring in sorted(rings, key=lambda ring: -ring.polygon.area):
+        if not shapely.covers(np.array([other.polygon for other in kept]), ring.polygon).any():
+            shapely.prepare(ring.polygon)
+            kept.append(ring)
+    return kept
+
+
+def _outlines_on_page(search: Search, page: Ring) -> frozenset[int]:
+    """Strokes inside the page that close around creases: no sheets, as asked, and no holes, as creases are in them.
+
+    Black ones are edges only beside marked creases.
+    """
+    left = search.having([*EDGE_ROLES, Role.DARK] if search.marked else EDGE_ROLES)
+    left = [i for i in left if i not in page.members]
+    lines = curve_lines(search.some(search.having(CREASE_ROLES if search.marked else [Role.DARK, Role.PALE])))
+    found: set[int] = set()
+    for _ in range(_MOST_NESTED):
+        rings, others = _innermost(search, left, lines, _SHARE_BLACK, JOIN, page)
+        if not rings:
+            break
+        found |= others.union(*(ring.members for ring in rings))
+        left = [i for i in left if i not in found]
+    return frozenset(found)
+
+
+def _found(rings: Sequence[Ring], explained: str, unused: Mapping[int, str] | None = None) -> Found:
     notes = [explained] if explained else []
     for ring in rings:
         for gap in ring.gaps:
             x, y = gap.place.tolist()
             notes.append(f"the border was open by {gap.width:.4g} near ({x:.4g}, {y:.4g}) and was closed there")
     ordered = sorted(rings, key=lambda ring: min(ring.members, default=0))
-    return Found(tuple(ordered), frames, notes=tuple(notes))
+    return Found(tuple(ordered), unused or {}, notes=tuple(notes))
 
 
 # ---- no drawn outline

@@ -28,7 +28,7 @@ MAX_HOLES = 1_000
 _LETTERS = {Role.MOUNTAIN: "M", Role.VALLEY: "V"}
 #: Strokes that say they are nothing to fold, and what becomes of what lies off the sheet.
 _NO_PART = frozenset({Role.ASIDE, Role.FACET})
-_BESIDE = "left out: beside the sheet"
+_BESIDE = "beside the sheet"
 _NO_CREASE = f"the drawing has no crease: {BLANK}"
 
 
@@ -69,23 +69,28 @@ def _patterns(
     near: list[list[int]] = []
     for ring in found.sheets:
         grown = ring.polygon.buffer(JOIN * size)
-        near.append(sorted({*tree.query(grown, predicate="intersects").tolist(), *ring.members} - found.frames))
+        near.append(
+            sorted({*tree.query(grown, predicate="intersects").tolist(), *ring.members} - found.unused.keys())
+        )
         beside -= set(near[-1])
-    apart = [_fated(strokes[i], i in found.frames) for i in sorted(beside)]
+    apart = [_fated(strokes[i], found.unused.get(i, _BESIDE)) for i in sorted(beside)]
+    on_paper = {i for ring, mine in zip(found.sheets, near, strict=True) for i in mine if i not in ring.members}
+    looks = frozenset(strokes[i].decision.role for i in on_paper) & CREASE_ROLES
     patterns = []
     for number, (ring, mine) in enumerate(zip(found.sheets, near, strict=True), 1):
         local = {i: k for k, i in enumerate(mine)}
         own = replace(ring, members=frozenset(local[i] for i in ring.members))
-        sheet = _Sheet([strokes[i] for i in mine], size, marked)
+        sheet = _Sheet([strokes[i] for i in mine], size, marked, looks)
         left_out = found.holes[number - 1] if found.holes else ()
         patterns.append(sheet.pattern(own, left_out, lines, [] if number > 1 else apart, notes, conflicts))
     return tuple(patterns)
 
 
-def _fated(stroke: Stroke, frame: bool) -> Stroke:
+def _fated(stroke: Stroke, where: str) -> Stroke:
+    """A stroke off the sheets: what it is called if it says so itself, else ``where`` it is."""
     if stroke.decision.role in _NO_PART:
         return replace(stroke, fate=_left_out(stroke))
-    return replace(stroke, fate="left out: a frame around the sheet" if frame else _BESIDE)
+    return replace(stroke, fate=f"left out: {where}")
 
 
 def _left_out(stroke: Stroke) -> str:
@@ -95,12 +100,14 @@ def _left_out(stroke: Stroke) -> str:
 class _Sheet:
     """The decisions about the strokes of one sheet, step by step. Not reusable."""
 
-    def __init__(self, strokes: Sequence[Stroke], size: float, marked: bool) -> None:
+    def __init__(self, strokes: Sequence[Stroke], size: float, marked: bool, looks: frozenset[Role]) -> None:
         self._strokes = list(strokes)
         self._size = size
         self._tolerance = JOIN * size
         #: Whether anything says "I am a crease"; otherwise black lines are the creases.
         self._marked = marked
+        #: What creases of this sheet and of the others beside it say that they are.
+        self._looks = looks
 
     def pattern(
         self,
@@ -196,7 +203,8 @@ class _Sheet:
         kept = list(holes)
         for ring in sorted(rings, key=lambda ring: -ring.polygon.area):
             polygons = np.array([hole.polygon for hole in kept])
-            if shapely.intersects(polygons, ring.polygon).any():
+            # Holes may touch each other.
+            if shapely.intersects(polygons, ring.polygon.buffer(-2.0 * self._tolerance)).any():
                 if shapely.covers(polygons, ring.polygon).any():
                     for i in ring.members:
                         self._settle(i, "left out: inside a hole")
@@ -222,7 +230,7 @@ class _Sheet:
         on, fallen = shapely.intersects(grown, lines), shapely.covers(gaps, lines)
         for i, here, gone in zip(mine, on.tolist(), fallen.tolist(), strict=True):
             if not here:
-                self._settle(i, _BESIDE)
+                self._settle(i, f"left out: {_BESIDE}")
             elif gone:
                 self._settle(i, "left out: inside a hole")
 
@@ -258,9 +266,8 @@ class _Sheet:
         marked = self._open(*CREASE_ROLES)
         plain = [i for i, stroke in enumerate(self._strokes) if stroke.fate == "unassigned crease"]
         # One look for all creases distinguishes nothing. Names are meant, also when there is but one.
-        roles = {self._strokes[i].decision.role for i in marked}
         looks = all(self._strokes[i].decision.why in ("hue", "dash pattern") for i in marked)
-        if marked and not plain and len(roles) == 1 and roles <= set(_LETTERS) and looks:
+        if marked and not plain and len(self._looks) == 1 and self._looks <= _LETTERS.keys() and looks:
             for i in marked:
                 self._settle(i, "unassigned crease, since all creases look the same")
             plain, marked = marked, []

@@ -16,7 +16,7 @@ import shapely
 import solver
 from solver.command_line import main
 from solver.errors import CurvefoldError, PatternError, ReadError
-from solver.pattern import fold_file_frames
+from solver.pattern import fold_file_frames, fold_file_strokes
 from solver.pattern.crease_pattern import CreasePattern
 from solver.pattern.curves import sample_crease
 from solver.pattern.fold_file import read_fold
@@ -685,3 +685,44 @@ def test_a_result_is_not_written_over_its_drawing(tmp_path: Path) -> None:
     assert main(["fold", str(path), "--out", str(tmp_path)], said) == 2
     assert "over it" in said.getvalue()
     assert path.read_bytes() == before
+
+
+# ---- folded forms of many faces and frames
+
+
+def stack(offsets: Sequence[float]) -> dict[str, Any]:
+    """Unit squares beside each other, each at its offset along x; called folded."""
+    corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+    points = [[x + dx, y] for dx in offsets for x, y in corners]
+    faces = [[4 * k + j for j in range(4)] for k in range(len(offsets))]
+    return {"frame_classes": ["foldedForm"], "vertices_coords": points, "faces_vertices": faces}
+
+
+def test_one_face_of_many_that_lies_on_another_makes_a_folded_form_of_it() -> None:
+    count = 3 * fold_file_frames._AT_ONCE
+    beside = [float(k) for k in range(count)]
+    assert len(read(stack(beside)).boundary) >= 4
+    with pytest.raises(PatternError, match="only a folded form"):
+        read(stack([*beside, count - 0.5]))
+
+
+def test_frames_that_inherit_the_same_folded_form_are_looked_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked: list[int] = []
+    lies_open = fold_file_frames._lies_open
+    monkeypatch.setattr(
+        fold_file_frames,
+        "_lies_open",
+        lambda file, index, flat: looked.append(index) or lies_open(file, index, flat),
+    )
+    heirs = [{"frame_inherit": True, "frame_parent": 0} for _ in range(50)]
+    with pytest.raises(PatternError, match="only a folded form"):
+        read({**stack([0.0, 0.5]), "file_frames": heirs})
+    assert looked == [0]
+
+
+def test_lines_of_a_mesh_that_are_too_many_are_left_out_with_a_note(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a border they are candidates for it, as long as there are not too many."""
+    content = cross("VVMM", edges_assignment=[*"UUUUUUUU", *"VVFF"], faces_vertices=None)
+    assert not any("lines of a mesh" in note for note in read(content).notes)
+    monkeypatch.setattr(fold_file_strokes, "MAX_STROKES", 3)
+    assert any("2 edges left out: flat or joined, lines of a mesh" in note for note in read(content).notes)

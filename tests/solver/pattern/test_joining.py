@@ -149,3 +149,19 @@ def test_irregular_gaps_and_few_dashes_stay_as_they_are() -> None:
     starts = [0, 6, 15, 40, 47, 80]
     assert len(joined(*(stroke([(x, 0), (x + 4, 0)]) for x in starts))) == 6
     assert len(joined(*(stroke([(6 * k, 0), (6 * k + 4, 0)]) for k in range(3)))) == 3
+
+
+def test_dashes_around_a_circle_are_a_closed_crease() -> None:
+    radius = 40.0
+    pieces = dashes(arc(720, radius, 2 * np.pi), [np.pi * radius / 30, np.pi * radius / 60 - 1e-9], Role.MOUNTAIN)
+    [one] = joined(*pieces)
+    assert one.curve.closed
+    assert len(one.curve.points) == len(pieces) == 40
+    np.testing.assert_allclose(np.hypot(*(one.curve.points - [50, 10]).T), radius, atol=0.01)
+
+
+def test_short_creases_between_long_ones_are_no_dashes() -> None:
+    """Bricks: every other joint of a row ends at the courses, and nothing is drawn between."""
+    courses = [stroke([(0, y), (100, y)]) for y in np.linspace(0.0, 100.0, 11)]
+    joints = [stroke([(50, y), (50, y + 10)], Role.VALLEY) for y in np.linspace(0.0, 80.0, 5)]
+    assert len(joined(*courses, *joints)) == len(courses) + len(joints)
