@@ -407,7 +407,14 @@ def _wanted_source(mesh: bpy.types.Mesh) -> state.Source:
     # A paper whose drawing is gone keeps it.
     if sheet is None or sheet.name not in bpy.context.scene.objects:
         return stored.told(settings.resolution)
-    return state.source_of(drawing.read_drawing(sheet), settings.resolution)
+    drawn = drawing.read_drawing(sheet)
+    # Creases are gone when the last one is deleted, or when the paper was appended to another file without them.
+    if not drawn.creases and state.pattern_of(stored).creases:
+        raise solver.PatternError(
+            "it has no crease any more, so the paper keeps those it has; draw another one, or make another paper",
+            element=sheet.name,
+        )
+    return state.source_of(drawn, settings.resolution)
 
 
 def _unparked(uid: int, shape: state.StoredShape) -> Session | None:

@@ -84,14 +84,20 @@ def test_what_is_there_of_other_papers_is_there_of_it(bent):
     assert bpy.ops.curvefold.flatten() == {"FINISHED"}
 
 
-def test_a_crease_that_is_deleted_leaves_blank_paper_and_one_that_is_drawn_folds(extension, paper, sheet, live):
+def test_a_paper_keeps_its_creases_when_the_last_is_deleted_and_follows_a_new_one(extension, paper, sheet, live):
+    paper.data.curvefold.fold = 40.0
     live.settle(paper.data)
+    folded = bytes(paper.data["curvefold_positions"])
     crease = sheet.children[0]
     curve = crease.data
     bpy.data.objects.remove(crease)
     live.rebuild(paper.data)
-    live.settle(paper.data)
-    assert live.report(paper.data).creases == ()
+    while live.is_at_work():
+        live.tick(1.0)
+    assert bytes(paper.data["curvefold_positions"]) == folded
+    assert "it has no crease any more" in live.report(paper.data).sentence
+    with pytest.raises(extension("solver").PatternError, match="no crease any more"):
+        live.settle(paper.data)
     extension("curvefold_addon.bridge.drawing_objects").new_crease(curve, sheet, "U", 1e-4)
     bpy.context.view_layer.update()
     paper.data.curvefold.fold = 40.0
