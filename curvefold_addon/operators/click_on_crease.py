@@ -25,7 +25,12 @@ class ClickOnCrease(OnPaper):
             return self.refuse("Creases are clicked in a 3D view")
         if context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
-        self._paper = live.active_paper(context).name
+        paper = live.active_paper(context)
+        try:
+            self.check(paper)
+        except StateError as error:
+            return self.refuse(str(error))
+        self._paper = paper.name
         context.window.cursor_modal_set(self.cursor)
         context.workspace.status_text_set(HELP)
         context.window_manager.modal_handler_add(self)

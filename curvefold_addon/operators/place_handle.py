@@ -29,7 +29,12 @@ class PlaceHandle(OnPaper, bpy.types.Operator):
             return {"CANCELLED"}
         if context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
-        self._paper = live.active_paper(context).name
+        paper = live.active_paper(context)
+        try:
+            self.check(paper)
+        except StateError as error:
+            return self.refuse(str(error))
+        self._paper = paper.name
         context.window.cursor_modal_set("CROSSHAIR")
         context.workspace.status_text_set(HELP)
         context.window_manager.modal_handler_add(self)
@@ -76,7 +81,11 @@ class PlaceHandle(OnPaper, bpy.types.Operator):
 
 
 def place_along(context: bpy.types.Context, paper: bpy.types.Object, origin, direction) -> bpy.types.Object | None:
-    """A handle where a ray of the world first meets the paper, and its empty; None when it misses."""
+    """A handle where a ray of the world first meets the paper, and its empty; None when it misses.
+
+    Raises CurvefoldError, StateError.
+    """
+    live.check_follows(paper.data)
     to_local = paper.matrix_world.inverted_safe()
     point = surface_points.under_ray(paper.data, to_local @ origin, to_local.to_3x3() @ direction)
     if point is None:
