@@ -123,7 +123,7 @@ def why_it_stays(mesh: bpy.types.Mesh) -> str:
     """Why a paper follows nothing that it is told, a sentence: it is linked, or was changed by hand; else empty."""
     if not linked.is_local(mesh):
         paper = paper_of(mesh)
-        return linked.why_not_changeable(mesh, name="" if paper is None else paper.name)
+        return linked.why_not_changeable(mesh.name if paper is None else paper.name, mesh)
     return BY_HAND if by_hand.is_changed(mesh) else ""
 
 
@@ -397,11 +397,12 @@ def _look(scene: bpy.types.Scene) -> _Watch:
     known = {mesh.session_uid for mesh in bpy.data.meshes if mesh.curvefold.is_paper}
     if not known:
         return watch
+    shown: dict[int, bpy.types.Object] = {}
     for thing in scene.objects:
         if thing.type == "MESH" and thing.data.session_uid in known:
-            watch.papers.setdefault(thing.data.session_uid, thing.name)
-    for uid, name in watch.papers.items():
-        paper = scene.objects[name]
+            shown.setdefault(thing.data.session_uid, thing)
+    for uid, paper in shown.items():
+        watch.papers[uid] = paper.name
         settings = paper.data.curvefold
         movers = hooks.movers(settings)
         shapes = [mover.data for mover in movers if mover.type == "CURVE"]
@@ -420,7 +421,11 @@ def _paper(uid: int) -> bpy.types.Object | None:
         if paper is not None and paper.type == "MESH" and paper.data.session_uid == uid:
             return paper
         _look_again()  # renamed, removed, or made since
-    return None
+    if name is None:
+        return None
+    # What is linked may have the same name.
+    meshes = (thing for thing in bpy.context.scene.objects if thing.type == "MESH")
+    return next((thing for thing in meshes if thing.data.session_uid == uid), None)
 
 
 def _may_move(paper: bpy.types.Object) -> bool:

@@ -33,7 +33,7 @@ class MakeOrdinaryMesh(bpy.types.Operator):
         chosen = _papers(context)
         made = []
         for paper in chosen:
-            reason = linked.why_not_changeable(paper.data, name=paper.name)
+            reason = linked.why_not_changeable(paper.name, paper.data)
             if reason:
                 self.report({"WARNING"}, reason)
             else:
@@ -53,7 +53,7 @@ def _papers(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 def _why_none(papers: Iterable[bpy.types.Object]) -> str:
     """Why no paper can become an ordinary mesh; empty when one can."""
-    reasons = [linked.why_not_changeable(paper.data, name=paper.name) for paper in papers]
+    reasons = [linked.why_not_changeable(paper.name, paper.data) for paper in papers]
     return "" if "" in reasons else reasons[0]
 
 

@@ -22,7 +22,7 @@ class OnPaper:
         if paper is None:
             cls.poll_message_set("Select a paper or one of its handles")
             return False
-        reason = "" if cls.only_looks else linked.why_not_changeable(paper.data, name=paper.name)
+        reason = "" if cls.only_looks else linked.why_not_changeable(paper.name, paper.data)
         if reason:
             cls.poll_message_set(reason)
         return not reason
