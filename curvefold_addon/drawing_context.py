@@ -1,10 +1,12 @@
 """Which drawing a command is about, and who has to know when it has changed."""
 
+from collections.abc import Iterable, Sequence
+
 import bpy
 
 from .. import solver
 from . import live
-from .bridge import drawing_objects, state
+from .bridge import drawing_objects, linked, state
 
 
 def active_sheet(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -69,6 +71,31 @@ def in_object_mode(operator: type, context: bpy.types.Context) -> bool:
         return True
     operator.poll_message_set("Works in Object Mode")
     return False
+
+
+def may_change(operator: type, item: bpy.types.Object) -> bool:
+    """For polls: says so when an object is linked, so that no change of it would be saved."""
+    reason = linked.why_not_this(item)
+    if reason:
+        operator.poll_message_set(reason)
+    return not reason
+
+
+def may_change_some(operator: type, items: Sequence[bpy.types.Object]) -> bool:
+    """For polls: says so when all objects are linked."""
+    return any(not linked.why_not_this(item) for item in items) or may_change(operator, items[0])
+
+
+def changeable(operator: bpy.types.Operator, items: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Those of the objects that are not linked; of each that is, the user is told."""
+    found = []
+    for item in items:
+        reason = linked.why_not_this(item)
+        if reason:
+            operator.report({"WARNING"}, reason)
+        else:
+            found.append(item)
+    return found
 
 
 NO_SHEET = "Select a paper sheet, or something on it"

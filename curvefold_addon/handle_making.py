@@ -6,7 +6,7 @@ import bpy
 from mathutils import Vector
 
 from . import live
-from .bridge import hooks
+from .bridge import hooks, linked
 from .bridge.mesh import longer_side
 from .bridge.surface_points import SurfacePoint
 
@@ -52,7 +52,7 @@ def new_empty(paper: bpy.types.Object, place: Sequence[float], name: str) -> bpy
     empty.empty_display_size = EMPTY_SIZE * longer_side(paper.data)
     empty.show_in_front = True
     empty.color = EMPTY_COLOR
-    for collection in paper.users_collection:
+    for collection in linked.homes_beside(paper):
         collection.objects.link(empty)
     empty.parent = paper
     empty.location = place
@@ -72,8 +72,13 @@ def remove_handle(paper: bpy.types.Object, index: int) -> None:
 
 def drop_empty(hook: bpy.types.Object | None) -> None:
     """Removes what pulls no handle any more, when it was made for one and nothing else needs it."""
-    if hook is not None and hook.get(OURS) and not hook.children and _is_unused(hook):
+    if hook is not None and _is_ours(hook) and not hook.children and _is_unused(hook):
         bpy.data.objects.remove(hook)
+
+
+def _is_ours(hook: bpy.types.Object) -> bool:
+    """Whether an empty was made for a handle, and in this file."""
+    return bool(hook.get(OURS)) and linked.is_local(hook)
 
 
 def _is_unused(hook: bpy.types.Object) -> bool:
@@ -103,7 +108,7 @@ def lay_flat(paper: bpy.types.Object) -> None:
         if hook is None:
             if handle.pinned:
                 handle.offset = place
-        elif hook.get(OURS) and hung.count(hook) == 1 and hook.parent == paper and not hook.animation_data:
+        elif _is_ours(hook) and hung.count(hook) == 1 and hook.parent == paper and not hook.animation_data:
             hook.matrix_basis.identity()
             hook.matrix_parent_inverse.identity()
             hook.location = place

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from .. import solver
-from .bridge import baking, controls, drawing, hooks, papers, state
+from .bridge import baking, by_hand, controls, drawing, hooks, linked, papers, state
 from .bridge.drawing_objects import creases_of, is_part, sheet_of
 from .bridge.report import CreaseReport, Report, describe, describe_crease, describe_fault
 from .bridge.session import Session, carried_session, stored_session
@@ -27,6 +27,8 @@ __all__ = ["CreaseReport", "Report", "rebuild", "report", "session", "settle", "
 DRAWING_RESTS = 0.25
 #: Iterations after which a fold that is waited for is left as it is.
 SETTLING = 1500
+#: What is said of a paper that does not follow, since following would write over what somebody did to its mesh.
+BY_HAND = "Its mesh was changed by hand: Restore the Paper throws that away, Make Ordinary Mesh keeps it"
 
 
 @dataclass
@@ -81,6 +83,8 @@ def rebuild(mesh: bpy.types.Mesh) -> None:
 
 def rehook(mesh: bpy.types.Mesh, handle: bpy.types.PropertyGroup) -> None:
     """A handle has another hook, or none: its point is held where it is."""
+    if not linked.is_local(mesh):
+        return
     handle.pinned = handle.hook is None
     paper = paper_of(mesh)
     if paper is None:
@@ -105,6 +109,7 @@ def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
     _stale.pop(uid, None)
     wanted = _wanted_source(mesh)
     if not found.source.meets(wanted):
+        found.write(mesh)  # marks that somebody took away: they tell what users' layers belong to
         found = carried_session(wanted, found.snapshot())
         adopt(paper, found)
     _faults.pop(uid, None)
@@ -114,10 +119,26 @@ def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
     _awake.discard(uid)
 
 
+def why_it_stays(mesh: bpy.types.Mesh) -> str:
+    """Why a paper follows nothing that it is told, a sentence: it is linked, or was changed by hand; else empty."""
+    if not linked.is_local(mesh):
+        paper = paper_of(mesh)
+        return linked.why_not_changeable(mesh.name if paper is None else paper.name, mesh)
+    return BY_HAND if by_hand.is_changed(mesh) else ""
+
+
+def check_follows(mesh: bpy.types.Mesh) -> None:
+    """Before a paper is told anything. Raises StateError."""
+    reason = why_it_stays(mesh)
+    if reason:
+        raise state.StateError(reason)
+
+
 def check_writable(mesh: bpy.types.Mesh) -> None:
     """Nothing that is written to a mesh in Edit Mode, of whatever object that shows it, lasts, and shape keys hide
-    it. Raises StateError.
+    it; what was changed by hand would be lost. Raises StateError.
     """
+    check_follows(mesh)
     if mesh.is_editmode:
         raise state.StateError(f"{mesh.name} is in Edit Mode; leave it to fold the paper")
     if baking.is_baked(mesh):
@@ -129,7 +150,7 @@ def check_writable(mesh: bpy.types.Mesh) -> None:
 def report(mesh: bpy.types.Mesh) -> Report | None:
     """Facts about the paper from its session; None when it has none. Never triggers work."""
     uid = mesh.session_uid
-    fault = _faults.get(uid) or _broken.get(uid, "")
+    fault = why_it_stays(mesh) or _faults.get(uid) or _broken.get(uid, "")
     found = _sessions.get(uid) or _parked.get(uid)
     if found is None:
         return describe_fault(fault) if fault else None
@@ -196,9 +217,35 @@ def fold_anew(paper: bpy.types.Object) -> bool:
 
 
 def show_again(paper: bpy.types.Object) -> None:
-    """The mesh shows what is kept of the paper, whatever it has shown in between."""
+    """The mesh shows what is kept of the paper, whatever it has shown in between.
+
+    Raises CurvefoldError, StateError.
+    """
+    papers.restore(paper.data, make_session(paper))
+
+
+def restore(paper: bpy.types.Object) -> bool:
+    """The mesh shows what is kept of the paper again, whatever somebody has done to it by hand.
+
+    Where all of it was moved, turned or scaled as one, its objects get that instead, so that it stays where it is;
+    whether that was so. Raises CurvefoldError, StateError.
+    """
+    mesh = paper.data
     found = make_session(paper)
-    papers.show_positions(paper.data, found)
+    matrix = by_hand.moved_as_one(mesh, found.net.render_map.apply(found.positions))
+    kept = matrix is not None and by_hand.move_objects(mesh, matrix, bpy.data.objects)
+    show_again(paper)
+    wake(mesh)
+    return kept
+
+
+def drop(mesh: bpy.types.Mesh) -> None:
+    """A mesh is no paper any more: nothing is left of what was known about it."""
+    uid = mesh.session_uid
+    for known in (_sessions, _parked, _making, _stale, _faults, _broken):
+        known.pop(uid, None)
+    _awake.discard(uid)
+    _look_again()
 
 
 def paper_of(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
@@ -360,11 +407,12 @@ def _look(scene: bpy.types.Scene) -> _Watch:
     known = {mesh.session_uid for mesh in bpy.data.meshes if mesh.curvefold.is_paper}
     if not known:
         return watch
+    shown: dict[int, bpy.types.Object] = {}
     for thing in scene.objects:
         if thing.type == "MESH" and thing.data.session_uid in known:
-            watch.papers.setdefault(thing.data.session_uid, thing.name)
-    for uid, name in watch.papers.items():
-        paper = scene.objects[name]
+            shown.setdefault(thing.data.session_uid, thing)
+    for uid, paper in shown.items():
+        watch.papers[uid] = paper.name
         settings = paper.data.curvefold
         movers = hooks.movers(settings)
         shapes = [mover.data for mover in movers if mover.type == "CURVE"]
@@ -383,12 +431,18 @@ def _paper(uid: int) -> bpy.types.Object | None:
         if paper is not None and paper.type == "MESH" and paper.data.session_uid == uid:
             return paper
         _look_again()  # renamed, removed, or made since
-    return None
+    if name is None:
+        return None
+    # What is linked may have the same name.
+    meshes = (thing for thing in bpy.context.scene.objects if thing.type == "MESH")
+    return next((thing for thing in meshes if thing.data.session_uid == uid), None)
 
 
 def _may_move(paper: bpy.types.Object) -> bool:
     mesh = paper.data
-    return mesh.curvefold.live and mesh.library is None and not mesh.is_editmode and mesh.shape_keys is None
+    if not mesh.curvefold.live or mesh.is_editmode or mesh.shape_keys is not None:
+        return False
+    return not why_it_stays(mesh)
 
 
 def _inputs(paper: bpy.types.Object, found: Session) -> hooks.Inputs:
@@ -428,7 +482,8 @@ def _unparked(uid: int, shape: state.StoredShape) -> Session | None:
 def _take(paper: bpy.types.Object, made: Session) -> None:
     """A session that goes on from what the mesh carries."""
     _sessions[paper.data.session_uid] = made
-    controls.match_creases(paper.data.curvefold, made.drawn)
+    if linked.is_local(paper.data):
+        controls.match_creases(paper.data.curvefold, made.drawn)
     made.take_up(_inputs(paper, made))
 
 

@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from . import drawing_context, live, wording
-from .bridge import baking, drawing_objects
+from .bridge import baking, by_hand, drawing_objects
 from .bridge.state import AUTOMATIC
 from .control_panels import (
     AngleList,
@@ -111,7 +111,11 @@ def _draw_standing(layout: bpy.types.UILayout, context: bpy.types.Context, paper
         say(box, context, report.sentence, wording.STATE_ICONS[report.state], alert=trouble)
         if report.vertices:
             say(box, context, wording.stretch(report), "BLANK1")
-    if baking.is_baked(mesh):
+    if by_hand.is_changed(mesh):
+        column = box.column(align=True)
+        column.operator("curvefold.restore_paper", icon="LOOP_BACK")
+        column.operator("curvefold.make_ordinary_mesh", icon="OUTLINER_OB_MESH")
+    elif baking.is_baked(mesh):
         say(box, context, wording.BAKED, "SHAPEKEY_DATA")
     elif mesh.shape_keys is not None:
         say(box, context, wording.KEYED, "ERROR", alert=True)
@@ -125,7 +129,7 @@ def _draw_standing(layout: bpy.types.UILayout, context: bpy.types.Context, paper
     row = layout.row(align=True)
     row.prop(settings, "live", toggle=True, icon="PLAY")
     row.operator("curvefold.flatten", text="Flatten", icon="MESH_PLANE")
-    if report is not None and report.state == "trouble":
+    if report is not None and report.state == "trouble" and not live.why_it_stays(mesh):
         layout.operator("curvefold.fold_anew", icon="FILE_REFRESH")
 
 
@@ -275,6 +279,7 @@ class AdvancedPanel(PaperPanel, bpy.types.Panel):
             row.label(text=f"Automatic: {report.resolution}")
         column.operator("curvefold.settle", text="Fold until Settled", icon="CHECKMARK")
         column.operator("curvefold.check_paper", icon="VIEWZOOM")
+        column.operator("curvefold.make_ordinary_mesh", icon="OUTLINER_OB_MESH")
         if report is not None and report.vertices:
             say(column, context, wording.effort(report))
 

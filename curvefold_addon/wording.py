@@ -60,9 +60,9 @@ def effort(report: Report) -> str:
     return f"{report.vertices} vertices, {report.milliseconds:.0f} ms an iteration"
 
 
-def count(number: int, thing: str) -> str:
-    """``3 creases``."""
-    return f"{number or 'No'} {thing}{'' if number == 1 else 's'}"
+def count(number: int, thing: str, things: str = "") -> str:
+    """``3 creases``. things: more than one, where that is not the one with an s."""
+    return f"{number or 'No'} {thing if number == 1 else things or thing + 's'}"
 
 
 def readable(text: str) -> str:

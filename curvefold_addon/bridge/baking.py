@@ -45,6 +45,12 @@ def is_baked(mesh: Any) -> bool:
     return mesh.shape_keys is not None and bool(mesh.shape_keys.get(_BAKED, False))
 
 
+def leave_keys(mesh: Any) -> None:
+    """Baked shape keys become the user's own."""
+    if is_baked(mesh):
+        del mesh.shape_keys[_BAKED]
+
+
 def remove_keys(paper: Any) -> None:
     """Takes the shape keys away again."""
     paper.data.shape_keys.animation_data_clear()

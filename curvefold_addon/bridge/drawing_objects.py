@@ -7,6 +7,8 @@ from typing import Any
 
 import bpy
 
+from . import linked
+
 SHEET, CREASE = "SHEET", "CREASE"
 
 #: Radius of a crease's line, relative to the sheet's longer side: that of a thick felt pen on a letter.
@@ -56,7 +58,7 @@ def mark_sheet(sheet: Any) -> None:
 def new_crease(curve: Any, sheet: Any, assignment: str, line: float) -> Any:
     """A crease of a sheet, in the sheet's own coordinates; ``line`` is the radius of its line."""
     crease = bpy.data.objects.new(curve.name, curve)
-    for collection in sheet.users_collection:
+    for collection in linked.homes_beside(sheet):
         collection.objects.link(crease)
     crease.parent = sheet
     mark_crease(crease, assignment, line)

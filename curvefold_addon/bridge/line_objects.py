@@ -10,6 +10,7 @@ import numpy as np
 from ...solver import FoldResult, PiecewiseDog, RulingKind, gauss_image, rulings
 from ...solver.arrays import FloatArray, IntArray
 from ...solver.net.carry_over import scaled
+from . import linked
 from .drawn import Color
 from .gauss_ball import BALL, PATCH_COLORS, beside, box, great_circles, longer_side
 from .mesh import metres_per_unit
@@ -99,7 +100,7 @@ def _add_spline(curve: Any, points: FloatArray, material: int) -> Any:
 
 def _add_child(paper: Any, curve: Any) -> Any:
     item = bpy.data.objects.new(curve.name, curve)
-    for collection in paper.users_collection:
+    for collection in linked.homes_beside(paper):
         collection.objects.link(item)
     item.parent = paper
     return item

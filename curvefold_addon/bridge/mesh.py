@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solver.net.carry_over import scaled
-from . import mesh_layers
+from . import by_hand, mesh_layers
 
 if TYPE_CHECKING:
     from ...solver import FoldResult, RenderMap
@@ -77,13 +77,21 @@ def fill(mesh: Any, surface: RenderMap, positions: NDArray[np.float64]) -> None:
     mesh.update(calc_edges=True)
     write_positions(mesh, shown)
 
-    flat = mesh.uv_layers.new(name=FLAT_UV)
-    flat.uv.foreach_set("vector", _single(surface.uv[corners]))
-    patch = mesh.attributes.new(PATCH, "INT", "FACE")
-    patch.data.foreach_set("value", np.asarray(surface.face_patch, dtype=np.int32))
-    _mark_creases(mesh, surface.crease_edges, surface.crease_edge_crease)
+    mark(mesh, surface)
     if theirs is not None:
         mesh_layers.write(mesh, FLAT_UV, theirs)
+    mesh.update()
+    by_hand.note(mesh)
+
+
+def mark(mesh: Any, surface: RenderMap) -> None:
+    """Gives a mesh with the geometry of a net the flat sheet as its UVs, and its patches and creases."""
+    # By their names: a new layer moves the others.
+    if FLAT_UV not in mesh.uv_layers:
+        mesh.uv_layers.new(name=FLAT_UV)
+    mesh.uv_layers[FLAT_UV].uv.foreach_set("vector", _single(surface.uv[np.asarray(surface.face_vertices)]))
+    _attribute(mesh, PATCH, "INT", "FACE").data.foreach_set("value", np.asarray(surface.face_patch, dtype=np.int32))
+    _mark_creases(mesh, surface.crease_edges, surface.crease_edge_crease)
     mesh.update()
 
 
@@ -94,14 +102,25 @@ def write_positions(mesh: Any, positions: NDArray[np.float64]) -> None:
         # foreach_set on the attribute leaves the bounding box stale in 4.2 to 5.0; one plain write does not.
         mesh.vertices[0].co = mesh.vertices[0].co
     mesh.update()
+    by_hand.note(mesh)
 
 
 def has_geometry_of(mesh: Any, surface: RenderMap) -> bool:
-    """Whether a mesh still has what ``fill`` gave it: nobody has cut it, or taken its marks away."""
+    """Whether a mesh has as many vertices, corners and faces as the net that it is to show."""
     counts = (len(mesh.vertices), len(mesh.loops), len(mesh.polygons))
-    if counts != (len(surface.uv), len(surface.face_vertices), len(surface.face_start) - 1):
-        return False
+    return counts == (len(surface.uv), len(surface.face_vertices), len(surface.face_start) - 1)
+
+
+def is_marked(mesh: Any) -> bool:
+    """Whether a mesh still has the marks that ``mark`` gave it: nobody has taken one away."""
     return FLAT_UV in mesh.uv_layers and all(name in mesh.attributes for name in (PATCH, CREASE, CREASE_EDGE))
+
+
+def can_be_marked(mesh: Any, surface: RenderMap) -> bool:
+    """Whether the faces of a mesh are those of the net, in the same order and the same way round."""
+    corners = np.empty(len(mesh.loops), dtype=np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    return np.array_equal(corners, surface.face_vertices)
 
 
 def longer_side(mesh: Any) -> float:
@@ -146,11 +165,19 @@ def _mark_creases(mesh: Any, crease_edges: NDArray[np.int64], creases: NDArray[n
     number[edges] = creases
     on_crease = np.zeros(count, dtype=bool)
     on_crease[edges] = True
-    mesh.attributes.new(CREASE, "INT", "EDGE").data.foreach_set("value", number)
+    _attribute(mesh, CREASE, "INT", "EDGE").data.foreach_set("value", number)
     # Everything is shaded smooth but the creases. Blender reads the second; the first one is ours to keep.
     for name in (CREASE_EDGE, _SHARP_EDGE):
-        attribute = mesh.attributes.get(name) or mesh.attributes.new(name, "BOOLEAN", "EDGE")
-        attribute.data.foreach_set("value", on_crease)
+        _attribute(mesh, name, "BOOLEAN", "EDGE").data.foreach_set("value", on_crease)
+
+
+def _attribute(mesh: Any, name: str, data_type: str, domain: str) -> Any:
+    """An attribute of that kind, made when it is missing. One of another kind is the user's: it makes room."""
+    found = mesh.attributes.get(name)
+    if found is not None and (found.data_type, found.domain) != (data_type, domain):
+        found.name = f"{name}.user"
+        found = None
+    return found or mesh.attributes.new(name, data_type, domain)
 
 
 def _edge_keys(ends: NDArray[Any], vertices: int) -> NDArray[np.int64]:

@@ -11,7 +11,7 @@ from mathutils import Matrix  # type: ignore[import-not-found]
 
 from ...solver import Crease, CreasePattern, Handle, Status
 from ...solver.description import AUTO
-from . import controls, hooks, state
+from . import by_hand, controls, hooks, state
 from . import mesh as surface
 from .curve_targets import target_points
 from .kept_controls import keep_controls
@@ -33,9 +33,12 @@ def show(mesh: Any, session: Session) -> None:
     state.store(mesh, session.source, session.positions)
 
 
-def show_positions(mesh: Any, session: Session) -> None:
-    """Shows the shape of a session on a mesh that has its geometry."""
-    surface.write_positions(mesh, session.net.render_map.apply(session.positions))
+def restore(mesh: Any, session: Session) -> None:
+    """Shows the shape of a session, whatever the mesh shows now; geometry of others is thrown away."""
+    if by_hand.has_other_parts(mesh):
+        surface.fill(mesh, session.net.render_map, session.positions)
+    else:
+        surface.write_positions(mesh, session.net.render_map.apply(session.positions))
 
 
 def keep(paper: Any, result: FoldResult) -> None:

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from ...solver import Handle, HandleError, Measurement, PiecewiseDog, SqpReport, Status, measure
 from ...solver.controls.pull import Finding
 from ...solver.net.carry_over import carry_over
+from . import by_hand, nets, state, worker
 from . import mesh as surface
-from . import nets, state, worker
 from .hooks import SAME_TARGET, WIDTH, Inputs, handles_begin, same
 from .nets import choose, drawn_of, net_of
 from .worker import Step, Worker
@@ -37,6 +37,7 @@ def stop() -> None:
     worker.stop()
     _ends.clear()
     nets.forget()
+    by_hand.forget()
 
 
 @dataclass(frozen=True, eq=False)
@@ -284,11 +285,14 @@ class Session:
                 del _ends[next(iter(_ends))]
 
     def _show(self, mesh: Any) -> None:
-        """Whatever else has been done to the mesh is undone: a paper cannot be cut."""
+        """Who calls has seen to it that nobody has changed the geometry by hand (``by_hand``)."""
         render_map = self.net.render_map
-        if not surface.has_geometry_of(mesh, render_map):
+        lost = not surface.is_marked(mesh)
+        if not surface.has_geometry_of(mesh, render_map) or (lost and not surface.can_be_marked(mesh, render_map)):
             surface.fill(mesh, render_map, self.positions)
             return
+        if lost:
+            surface.mark(mesh, render_map)
         shown = render_map.apply(self.positions)
         if self.dirty or not surface.shows(mesh, shown):
             surface.write_positions(mesh, shown)

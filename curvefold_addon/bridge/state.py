@@ -23,6 +23,8 @@ AUTOMATIC = 0
 #: Counts up when what is stored changes its meaning.
 FORMAT = 2
 
+#: How the names of all properties begin that a fold keeps on a mesh.
+_PREFIX = "curvefold_"
 _FORMAT = "curvefold_format"
 _POSITIONS = "curvefold_positions"
 _PATTERN = "curvefold_pattern"
@@ -122,6 +124,12 @@ def store_rest(mesh: Any, numbers: NDArray[np.float64]) -> None:
 def is_stored(mesh: Any) -> bool:
     """Whether the mesh carries a fold."""
     return _FORMAT in mesh
+
+
+def clear(mesh: Any) -> None:
+    """Takes all that is kept of a fold off a mesh; what the user has put on it stays."""
+    for key in [key for key in mesh.keys() if key.startswith(_PREFIX)]:  # noqa: SIM118  (an ID is no dictionary)
+        del mesh[key]
 
 
 def load_source(mesh: Any) -> Source:

@@ -7,7 +7,7 @@ from bpy.props import EnumProperty, FloatProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
 from .. import later_work, looking
-from ..bridge import drawing_objects
+from ..bridge import drawing_objects, linked
 from ..drawing_context import in_object_mode
 
 #: Shorter and longer side in metres: ISO 216 and ANSI.
@@ -82,7 +82,11 @@ class AddSheet(bpy.types.Operator, AddObjectHelper):
         else:
             width, height = (length / unit for length in PAPERS[self.size])
             _rectangle(curve, *((width, height) if self.orientation == "PORTRAIT" else (height, width)))
-        sheet = object_data_add(context, curve, operator=self)
+        if linked.new_home() == context.collection:
+            sheet = object_data_add(context, curve, operator=self)
+        else:
+            with context.temp_override(layer_collection=context.view_layer.layer_collection):
+                sheet = object_data_add(context, curve, operator=self)
         drawing_objects.mark_sheet(sheet)
         looking.show(context, sheet)
         return {"FINISHED"}

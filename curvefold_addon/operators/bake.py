@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from .. import live
-from ..bridge import baking
+from ..bridge import baking, by_hand
 from .on_paper import OnPaper
 
 
@@ -26,6 +26,7 @@ class Bake(OnPaper, bpy.types.Operator):
             return self.refuse("The paper has shape keys of its own; remove them first")
         if not mesh.curvefold.live:
             return self.refuse("The paper is not live, so there is nothing to bake")
+        live.check_writable(mesh)
         live.make_session(paper)  # before anything is changed: a paper that cannot be read stays as it is
         present = scene.frame_current
         shapes = []
@@ -46,12 +47,19 @@ class FreeBake(OnPaper, bpy.types.Operator):
     bl_label = "Free Bake"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
+    def check(self, paper: bpy.types.Object) -> None:
+        """What was done to the mesh by hand does not keep its shape keys."""
+
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
         mesh = paper.data
         if not baking.is_baked(mesh):
             return self.refuse("The paper is not baked")
+        changed = by_hand.is_changed(mesh)
         baking.remove_keys(paper)
-        live.show_again(paper)
+        if changed:
+            self.report({"WARNING"}, live.BY_HAND)
+        else:
+            live.show_again(paper)
         mesh.curvefold.live = True
         return {"FINISHED"}
 

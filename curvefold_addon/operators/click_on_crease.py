@@ -24,7 +24,12 @@ class ClickOnCrease(OnPaper):
         if context.area is None or context.area.type != "VIEW_3D":
             return self.refuse("Creases are clicked in a 3D view")
         drawing_tool.leave_edit_mode(context)
-        self._paper = live.active_paper(context).name
+        paper = live.active_paper(context)
+        try:
+            self.check(paper)
+        except StateError as error:
+            return self.refuse(str(error))
+        self._paper = paper.name
         context.window.cursor_modal_set(self.cursor)
         context.workspace.status_text_set(HELP)
         context.window_manager.modal_handler_add(self)

@@ -7,7 +7,7 @@ from bpy.props import EnumProperty
 
 from .. import drawing_tool, later_work
 from ..bridge import drawing, drawing_objects
-from ..drawing_context import NO_SHEET, active_sheet, select_only
+from ..drawing_context import NO_SHEET, active_sheet, may_change, select_only
 from ..properties import ASSIGNMENTS
 
 
@@ -25,10 +25,11 @@ class DrawCrease(bpy.types.Operator):
         if context.mode not in {"OBJECT", "EDIT_CURVE"}:
             cls.poll_message_set("Works in Object Mode, or while a curve is edited")
             return False
-        if active_sheet(context) is None:
+        sheet = active_sheet(context)
+        if sheet is None:
             cls.poll_message_set(NO_SHEET)
             return False
-        return True
+        return may_change(cls, sheet)
 
     @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:

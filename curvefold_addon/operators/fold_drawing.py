@@ -8,7 +8,7 @@ from bpy.props import FloatProperty
 
 from ... import solver
 from .. import later_work, paper_material, wording
-from ..bridge import drawing, mesh, papers
+from ..bridge import drawing, linked, mesh, papers
 from ..drawing_context import select_only
 from ..resolution_property import resolution_property, told
 from .drawing_files import READING, SUFFIXES, DrawingFiles
@@ -59,7 +59,7 @@ class FoldDrawing(DrawingFiles, bpy.types.Operator):
         except solver.CurvefoldError as error:
             self.refuse(error if error.where.file else error.in_file(pattern.name), beginning)
             return None
-        paper = mesh.add_paper(result, context.collection, paper_material.paper_material())
+        paper = mesh.add_paper(result, linked.new_home(), paper_material.paper_material())
         papers.keep(paper, result)
         self.tell(result.net.notes, beginning)
         kind = "INFO" if result.status.ok else "WARNING"

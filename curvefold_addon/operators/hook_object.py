@@ -18,8 +18,10 @@ class HookObject(OnPaper, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
+        if not super().poll(context):
+            return False
         active = context.active_object
-        if active is None or live.active_paper(context) != active or not _others(context):
+        if live.active_paper(context) != active or not _others(context):
             cls.poll_message_set("Select empties or other objects, and the paper last")
             return False
         return True

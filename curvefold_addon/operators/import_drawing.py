@@ -7,7 +7,7 @@ import bpy
 
 from ... import solver
 from .. import later_work, looking
-from ..bridge import drawing
+from ..bridge import drawing, linked
 from ..drawing_context import in_object_mode, select_only
 from .drawing_files import SUFFIXES, DrawingFiles
 
@@ -34,7 +34,7 @@ class ImportDrawing(DrawingFiles, bpy.types.Operator):
 
 def add_at_cursor(context: bpy.types.Context, files: Sequence[Sequence[solver.CreasePattern]]) -> None:
     """Sheets with the patterns' creases, all selected: those of a file as they lie in it, the files in a row."""
-    sheets = drawing.add_drawings(files, context.collection, context.scene.cursor.location)
+    sheets = drawing.add_drawings(files, linked.new_home(), context.scene.cursor.location)
     select_only(context, *sheets)
     looking.show(context, *sheets)
 

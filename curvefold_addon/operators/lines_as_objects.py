@@ -15,6 +15,7 @@ class RulingsAsObject(OnPaper, bpy.types.Operator):
     bl_idname = "curvefold.rulings_as_object"
     bl_label = "Rulings as Object"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+    only_looks = True
 
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
         if baking.is_baked(paper.data):
@@ -33,6 +34,7 @@ class GaussImageAsObject(OnPaper, bpy.types.Operator):
     bl_idname = "curvefold.gauss_image_as_object"
     bl_label = "Gauss Image as Object"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+    only_looks = True
 
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
         if baking.is_baked(paper.data):

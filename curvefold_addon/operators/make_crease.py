@@ -7,7 +7,16 @@ import bpy
 from ... import solver
 from .. import later_work
 from ..bridge import crease_making, drawing_objects, strokes
-from ..drawing_context import NO_SHEET, active_sheet, drawing_changed, in_object_mode, select_only
+from ..drawing_context import (
+    NO_SHEET,
+    active_sheet,
+    changeable,
+    drawing_changed,
+    in_object_mode,
+    may_change,
+    may_change_some,
+    select_only,
+)
 
 
 class MakeCrease(bpy.types.Operator):
@@ -19,19 +28,26 @@ class MakeCrease(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if active_sheet(context) is None:
+        sheet = active_sheet(context)
+        if sheet is None:
             cls.poll_message_set(NO_SHEET)
             return False
         if not _candidates(context):
             cls.poll_message_set("Select curves or grease pencil strokes as well as the sheet")
             return False
-        return in_object_mode(cls, context)
+        curves = [item for item in _candidates(context) if item.type == "CURVE"]
+        # Strokes are only read.
+        if len(curves) == len(_candidates(context)) and not may_change_some(cls, curves):
+            return False
+        return may_change(cls, sheet) and in_object_mode(cls, context)
 
     @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         sheet = active_sheet(context)
         made = []
-        for item in _candidates(context):
+        curves = [item for item in _candidates(context) if item.type == "CURVE"]
+        drawn = [item for item in _candidates(context) if item.type != "CURVE"]
+        for item in [*changeable(self, curves), *drawn]:
             try:
                 if item.type == "CURVE":
                     crease_making.lay_curve(item, sheet)

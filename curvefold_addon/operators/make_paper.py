@@ -7,7 +7,7 @@ from bpy.props import FloatProperty
 
 from ... import solver
 from .. import drawing_tool, handle_making, later_work, live, paper_material
-from ..bridge import drawing, papers, state
+from ..bridge import drawing, linked, papers, state
 from ..bridge.nets import choose
 from ..bridge.session import flat_session
 from ..drawing_context import NO_SHEET, active_sheet, select_only
@@ -45,7 +45,7 @@ class MakePaper(bpy.types.Operator):
         try:
             chosen = choose(state.source_of(drawing.read_drawing(sheet), self.resolution))
             made = flat_session(chosen.source)
-            paper = papers.new_paper("Paper", context.collection, paper_material.paper_material())
+            paper = papers.new_paper("Paper", linked.new_home(), paper_material.paper_material())
             paper.matrix_world = sheet.matrix_world
             settings = paper.data.curvefold
             settings.sheet = sheet

@@ -4,26 +4,45 @@ import bpy
 
 from ... import solver
 from .. import later_work, live
+from ..bridge import linked
 from ..bridge.state import StateError
 
 
 class OnPaper:
-    """An operator on the paper that is active, or whose handle is."""
+    """An operator on the paper that is active, or whose handle is.
+
+    only_looks: whether it changes nothing of the paper, so that it works on linked papers too
+    """
+
+    only_looks = False
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if live.active_paper(context) is None:
+        paper = live.active_paper(context)
+        if paper is None:
             cls.poll_message_set("Select a paper or one of its handles")
             return False
-        return True
+        reason = "" if cls.only_looks else linked.why_not_changeable(paper.name, paper.data)
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
 
     @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
+        paper = live.active_paper(context)
         try:
-            return self.act(context, live.active_paper(context))
+            if not self.only_looks:
+                self.check(paper)
+            return self.act(context, paper)
         except (solver.CurvefoldError, StateError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+
+    def check(self, paper: bpy.types.Object) -> None:
+        """Before anything is changed. Raises StateError where the paper would not follow."""
+        if paper.mode == "EDIT":
+            paper.update_from_editmode()
+        live.check_follows(paper.data)
 
     def refuse(self, sentence: str) -> set[str]:
         """Says why nothing was done."""

@@ -27,7 +27,12 @@ class PlaceHandle(OnPaper, bpy.types.Operator):
             self.report({"ERROR"}, "Handles are placed in a 3D view")
             return {"CANCELLED"}
         drawing_tool.leave_edit_mode(context)
-        self._paper = live.active_paper(context).name
+        paper = live.active_paper(context)
+        try:
+            self.check(paper)
+        except StateError as error:
+            return self.refuse(str(error))
+        self._paper = paper.name
         context.window.cursor_modal_set("CROSSHAIR")
         context.workspace.status_text_set(HELP)
         context.window_manager.modal_handler_add(self)
@@ -76,6 +81,7 @@ def place_along(context: bpy.types.Context, paper: bpy.types.Object, origin, dir
 
     Raises CurvefoldError, StateError.
     """
+    live.check_follows(paper.data)
     to_local = paper.matrix_world.inverted_safe()
     point = surface_points.under_ray(paper.data, to_local @ origin, to_local.to_3x3() @ direction)
     if point is None:

@@ -7,7 +7,7 @@ from bpy.props import EnumProperty
 
 from .. import later_work
 from ..bridge import drawing_objects
-from ..drawing_context import drawing_changed
+from ..drawing_context import changeable, drawing_changed, may_change_some
 from ..properties import ASSIGNMENTS
 
 
@@ -22,15 +22,16 @@ class SetAssignment(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not _creases(context):
+        creases = _creases(context)
+        if not creases:
             cls.poll_message_set("Select creases")
             return False
-        return True
+        return may_change_some(cls, creases)
 
     @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         sheets = []
-        for crease in _creases(context):
+        for crease in changeable(self, _creases(context)):
             crease.curvefold.assignment = self.assignment
             drawing_objects.show_assignment(crease)
             sheet = drawing_objects.sheet_of(crease)

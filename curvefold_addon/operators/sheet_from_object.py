@@ -6,8 +6,8 @@ import bpy
 
 from ... import solver
 from .. import later_work
-from ..bridge import sheet_outline
-from ..drawing_context import in_object_mode, select_only
+from ..bridge import linked, sheet_outline
+from ..drawing_context import in_object_mode, may_change, select_only
 
 
 class SheetFromObject(bpy.types.Operator):
@@ -26,13 +26,16 @@ class SheetFromObject(bpy.types.Operator):
         if active.curvefold.role != "NONE" or (active.type == "MESH" and active.data.curvefold.is_paper):
             cls.poll_message_set("This object is a part of a drawing already")
             return False
+        # The curve itself becomes the sheet; of a mesh a new one is made.
+        if active.type == "CURVE" and not may_change(cls, active):
+            return False
         return in_object_mode(cls, context)
 
     @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         active = context.active_object
         try:
-            sheet = sheet_outline.make_sheet(active, context.collection)
+            sheet = sheet_outline.make_sheet(active, linked.new_home())
         except solver.PatternError as error:
             self.report({"ERROR"}, f"{active.name}: {error.message}")
             return {"CANCELLED"}

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import bpy
 
 from .. import live
-from ..bridge import baking, mesh_overlay
+from ..bridge import baking, by_hand, mesh_overlay
 from ..bridge import overlay as arrays
 
 #: A shape is at rest, and worth finding rulings for, when it is the same after this many seconds.
@@ -76,7 +76,7 @@ def of_paper(paper: bpy.types.Object, settings: bpy.types.PropertyGroup) -> Pape
     """What ``settings`` ask to be drawn over a paper. None when its mesh is no longer that of a paper."""
     mesh = paper.data
     session = live.session(mesh)
-    if session is None or baking.is_baked(mesh):
+    if session is None or baking.is_baked(mesh) or by_hand.is_changed(mesh):
         return _of_mesh(paper, settings)
     kept = _kept.get(mesh.session_uid)
     if kept is None or not kept.shape.is_of(session.net, session.positions):

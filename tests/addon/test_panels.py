@@ -474,3 +474,17 @@ def test_what_cannot_be_had_is_said_above_the_creases(panels, extension, paper):
     lack = live.report(paper.data).lacks[0]
     assert "is to be a mountain" in lack
     assert lack in " ".join(drawn(panels.CreasesPanel)["texts"])
+
+
+def test_a_paper_that_was_changed_by_hand_offers_both_ways_out(panels, paper, extension):
+    assert "curvefold.restore_paper" not in drawn(panels.MainPanel)["operators"]
+    assert "curvefold.make_ordinary_mesh" in drawn(panels.AdvancedPanel)["operators"]
+    paper.data.vertices[0].co.z += 0.01
+    notes = drawn(panels.MainPanel)
+    assert extension("curvefold_addon.live").BY_HAND in said(notes)
+    assert notes["operators"][:2] == ["curvefold.restore_paper", "curvefold.make_ordinary_mesh"]
+    assert "curvefold.fold_anew" not in notes["operators"]
+    # In the words of the sentence.
+    for operator in notes["operators"][:2]:
+        label = getattr(bpy.ops.curvefold, operator.partition(".")[2]).get_rna_type().name
+        assert label in said(notes)

@@ -46,7 +46,10 @@ TAKE_AWAY = {
     "delete_scene",
     "purge",
     "off_and_on",
+    "make_ordinary",
 }
+#: Steps after which a mesh that was changed by hand may be another.
+RESHAPE = {*TAKE_AWAY, "tamper", "restore"}
 
 
 def step(weight: int = 2) -> Callable[[Callable[["Walk"], None]], Callable[["Walk"], None]]:
@@ -66,6 +69,7 @@ class Walk:
     folder: Path
     settled: bool
     taken: list[str] = field(default_factory=list)
+    changed: dict[int, bytes] = field(default_factory=dict)
 
     @property
     def scene(self) -> bpy.types.Scene:
@@ -625,7 +629,7 @@ def tamper(walk):
     paper = walk.paper()
     if paper is None or not len(paper.data.vertices):
         return
-    what = walk.rng.randrange(6)
+    what = walk.rng.randrange(7)
     mesh = paper.data
     mesh[TAMPERED] = True
     if what == 0:
@@ -642,12 +646,29 @@ def tamper(walk):
         call(bpy.ops.object.shade_flat)
     elif what == 4:
         mesh.uv_layers.remove(mesh.uv_layers[0]) if len(mesh.uv_layers) else mesh.uv_layers.new()
+    elif what == 5:
+        bpy.ops.mesh.primitive_cube_add(size=0.01)
+        cube = bpy.context.active_object
+        walk.choose(paper, cube)
+        call(bpy.ops.object.join)
     else:
         paper.scale = [walk.rng.choice((0.5, 2.0, -1.0)) for _ in range(3)]
         if mesh.users == 1:
             call(bpy.ops.object.transform_apply)
     # An undo step of Edit Mode keeps the geometry and not the mark.
     to_object_mode()
+
+
+@step(3)
+def restore(walk):
+    if walk.paper() is not None:
+        call(bpy.ops.curvefold.restore_paper)
+
+
+@step(1)
+def make_ordinary(walk):
+    if len(walk.papers()) > 1 and walk.paper() is not None:
+        call(bpy.ops.curvefold.make_ordinary_mesh)
 
 
 @step(2)
@@ -716,6 +737,7 @@ def check(walk: Walk) -> None:
     addon = walk.addon
     assert not addon.live._broken, addon.live._broken
     assert not addon.handlers._said, addon.handlers._said
+    changed: dict[int, bytes] = {}
     edited = {thing.data.name for thing in bpy.data.objects if thing.mode != "OBJECT" and thing.data}
     for mesh in bpy.data.meshes:
         if not mesh.curvefold.is_paper:
@@ -730,9 +752,18 @@ def check(walk: Walk) -> None:
         if found is not None:
             assert found.source == kept.source, mesh.name
             assert np.array_equal(found.positions, kept.positions), mesh.name
+        if addon.by_hand.is_changed(mesh) and mesh.name not in edited:
+            present = shown(mesh).tobytes()
+            before = walk.changed.get(mesh.session_uid, present)
+            assert present == before or walk.taken[-1] in RESHAPE, f"{mesh.name} was changed by hand"
+            changed[mesh.session_uid] = present
         if mesh.name in edited or mesh.shape_keys is not None or TAMPERED in mesh:
             continue
         assert np.array_equal(shown(mesh), net.render_map.apply(kept.positions).astype(np.float32)), mesh.name
+    alive = {mesh.session_uid for mesh in bpy.data.meshes}
+    lost = alive & walk.changed.keys() - changed.keys()
+    assert not lost or edited or walk.taken[-1] in RESHAPE, "what was done by hand is lost"
+    walk.changed = changed
 
 
 def papers_of_file() -> int:
@@ -788,7 +819,8 @@ def addon(extension, pytestconfig, monkeypatch):
     live = extension("curvefold_addon.live")
     # A drawing need not rest before it is folded anew.
     monkeypatch.setattr(live, "DRAWING_RESTS", 0.0)
-    bridge = {name: extension(f"curvefold_addon.bridge.{name}") for name in ("drawing", "nets", "session", "state")}
+    names = ("by_hand", "drawing", "nets", "session", "state")
+    bridge = {name: extension(f"curvefold_addon.bridge.{name}") for name in names}
     monkeypatch.setattr(bridge["nets"], "LIVE_VERTICES", VERTICES)
     solver = extension("solver")
     package = solver.__package__.rpartition(".")[0]
