@@ -21,6 +21,8 @@ from .segments import Curve
 JOIN = 1e-4
 #: A vertex made by cutting lines at each other is dropped when it lies this straight between its neighbours.
 _COLLINEAR = 1e-9
+#: Lines whose directions have a smaller cross product run side by side: they have no corner.
+_PARALLEL = 0.1
 #: Pairs of pieces whose boxes overlap, and pairs that meet, above which cutting them takes minutes.
 MAX_NEAR = 2_000_000
 MAX_MEETING = 200_000
@@ -168,7 +170,9 @@ def _reached(
             if k < other and nearest[other] == k and distance[k, 1] <= reach:
                 a, b = int(loose[k]), int(loose[other])
                 gaps.append(Gap(0.5 * (ends[a] + ends[b]), float(distance[k, 1])))
-                ends[b] = ends[a]
+                ends[[a, b]] = _meeting(
+                    ends[[a, b]], [_way_out(curves[open_[end // 2]], end) for end in (a, b)], reach
+                )
                 left -= {a, b}
     lines = curve_lines([curves[i] for i in indices])
     tree = shapely.STRtree(lines)
@@ -186,6 +190,25 @@ def _reached(
             # A hair beyond the line, so that the two are cut at each other whatever is rounded.
             ends[k] = target + (target - ends[k]) * (1e-3 * tolerance / width)
     return ends, gaps
+
+
+def _way_out(curve: Curve, end: int) -> FloatArray:
+    """(2,) the direction in which an open curve would go on beyond its first (even ``end``) or last point."""
+    inner, outer = (1, 0) if end % 2 == 0 else (-2, -1)
+    way = curve.points[outer] - curve.points[inner]
+    return np.asarray(way / max(float(np.hypot(*way)), np.finfo(float).tiny))
+
+
+def _meeting(ends: FloatArray, ways: Sequence[FloatArray], reach: float) -> FloatArray:
+    """Where two ends (2,2) meet: in the corner that both go straight on to, if it is near, else at the first."""
+    cross = ways[0][0] * ways[1][1] - ways[0][1] * ways[1][0]
+    if abs(cross) > _PARALLEL:
+        gap = ends[1] - ends[0]
+        on = (gap[0] * ways[1][1] - gap[1] * ways[1][0]) / cross
+        corner = ends[0] + on * ways[0]
+        if np.hypot(*(corner - ends).T).max() <= reach:
+            return corner
+    return np.asarray(ends[0])
 
 
 def _noded(lines: Geometries) -> shapely.Geometry:

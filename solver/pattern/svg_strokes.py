@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -42,15 +43,23 @@ def lines_of(drawing: Drawing) -> Lines:
             strokes[k] = replace(strokes[k], decision=decision)
     if len(strokes) > MAX_STROKES:
         raise PatternError(f"the drawing has more than {MAX_STROKES:,} strokes", notes=drawing.notes)
-    fills = [shape for shape in drawing.shapes if shape.stroke is None and shape.filled]
-    outlines: dict[Drawn, list[FloatArray]] = defaultdict(list)
-    for shape, curve, _ in _curves(fills, size):
-        if len(curve.points) > 2:
-            outlines[shape].append(curve.points)
-    filled = tuple(tuple(rings) for rings in outlines.values())
+    filled = _filled(drawing.shapes, size)
     single, twice = without_copies(strokes)
     joined, notes = join_strokes(single, size)
     return Lines(tuple(joined), filled, drawing.page, drawing.unit_mm, (*twice, *notes, *drawing.notes))
+
+
+def _filled(shapes: Sequence[Drawn], size: float) -> tuple[tuple[FloatArray, ...], ...]:
+    """Of each shape that is filled and not stroked, its outlines (P,2).
+
+    They are only looked at where no stroke is a border, so that a drawing with too many of them has none.
+    """
+    outlines: dict[Drawn, list[FloatArray]] = defaultdict(list)
+    with contextlib.suppress(PatternError):
+        for shape, curve, _ in _curves([one for one in shapes if one.stroke is None and one.filled], size):
+            if len(curve.points) > 2:
+                outlines[shape].append(curve.points)
+    return tuple(tuple(rings) for rings in outlines.values())
 
 
 def _evidence(shape: Drawn) -> Evidence:

@@ -21,3 +21,13 @@ def test_a_line_that_goes_back_and_forth_on_itself_is_no_border() -> None:
         ]
     )
     assert outer_rings([Curve(points, False, None)], [0], 1.0) == []
+
+
+def test_sides_that_stop_short_of_a_corner_meet_in_it() -> None:
+    """Nothing is turned: each side only goes on in its own direction."""
+    sides = [[(0.8, 0), (99.2, 0)], [(100, 0.8), (100, 99.2)], [(99.2, 100), (0.8, 100)], [(0, 99.2), (0, 0.8)]]
+    curves = [Curve(np.array(side, dtype=float), False, None) for side in sides]
+    assert outer_rings(curves, range(4), 100.0) == []
+    [ring] = outer_rings(curves, range(4), 100.0, 2e-2)
+    assert sorted(map(tuple, ring.points.round(9).tolist())) == [(0, 0), (0, 100), (100, 0), (100, 100)]
+    assert len(ring.gaps) == 4
