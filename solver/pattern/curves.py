@@ -105,7 +105,7 @@ def _densify(points: FloatArray, closed: bool, spacing: float) -> FloatArray:
     return drop_repeats(np.vstack(dense))
 
 
-def _is_zigzag(points: FloatArray) -> bool:
+def is_zigzag(points: FloatArray) -> bool:
     """Whether a polyline turns left and right in turn, which no samples of a smooth curve do."""
     steps = np.diff(points, axis=0)
     cross = steps[:-1, 0] * steps[1:, 1] - steps[:-1, 1] * steps[1:, 0]
@@ -115,7 +115,7 @@ def _is_zigzag(points: FloatArray) -> bool:
 
 def _spline(points: FloatArray, spacing: float, periodic: bool) -> FloatArray:
     steps = np.hypot(*np.diff(points, axis=0).T)
-    if steps.max() <= spacing or turns(points).max() < 1e-7 or _is_zigzag(points):
+    if steps.max() <= spacing or turns(points).max() < 1e-7 or is_zigzag(points):
         return points
     along = np.concatenate([[0.0], np.cumsum(steps)])
     curve = CubicSpline(along, points, bc_type="periodic" if periodic else "not-a-knot")

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from ..arrays import BoolArray, FloatArray
 from .chains import Path, joined_smoothly, walked, without_straight
-from .curves import CORNER
+from .curves import CORNER, is_zigzag
 from .rings import JOIN, curve_lines, lines_at, meeting_places
 from .segments import STRAIGHT, Curve
 from .stroke import CREASE_ROLES, Decision, Role, Stroke
@@ -203,6 +203,9 @@ def _row(path: Path, ends: FloatArray, lengths: FloatArray) -> list[tuple[int, b
     longest = float(lengths[path.edges].max())
     regular = gaps.min() >= low and gaps.max() <= high and gaps.max() <= _GAP_TO_DASH * longest
     if not regular or _kinds_of_lengths(lengths[path.edges][1:-1]) > 2:
+        return []
+    # Lines of a pattern that stand in a row by chance point to all sides; dashes turn as their line does.
+    if is_zigzag(ends[np.column_stack([first, last]).ravel()]):
         return []
     return list(zip(path.edges.tolist(), forward.tolist(), strict=True))
 

@@ -165,3 +165,9 @@ def test_short_creases_between_long_ones_are_no_dashes() -> None:
     courses = [stroke([(0, y), (100, y)]) for y in np.linspace(0.0, 100.0, 11)]
     joints = [stroke([(50, y), (50, y + 10)], Role.VALLEY) for y in np.linspace(0.0, 80.0, 5)]
     assert len(joined(*courses, *joints)) == len(courses) + len(joints)
+
+
+def test_lines_in_a_row_that_point_to_all_sides_are_no_dashes() -> None:
+    slopes = [0.2 * (k * 0.618 % 1.0) for k in range(12)]
+    lines = [stroke([(8 * k, 50 + 0.8 * k), (8 * k + 5, 50 + 0.8 * k + 5 * m)]) for k, m in enumerate(slopes)]
+    assert len(joined(*lines)) == 12
