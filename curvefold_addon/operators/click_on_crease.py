@@ -27,7 +27,7 @@ class ClickOnCrease(OnPaper):
             bpy.ops.object.mode_set(mode="OBJECT")
         paper = live.active_paper(context)
         try:
-            self.check(paper)
+            live.check_follows(paper.data)
         except StateError as error:
             return self.refuse(str(error))
         self._paper = paper.name

@@ -31,7 +31,7 @@ class PlaceHandle(OnPaper, bpy.types.Operator):
             bpy.ops.object.mode_set(mode="OBJECT")
         paper = live.active_paper(context)
         try:
-            self.check(paper)
+            live.check_follows(paper.data)
         except StateError as error:
             return self.refuse(str(error))
         self._paper = paper.name
