@@ -15,7 +15,7 @@ def active_sheet(context: bpy.types.Context) -> bpy.types.Object | None:
     active = context.active_object
     if active is not None:
         found = _sheet_behind(active)
-        if found is not None:
+        if found is not None and not drawing_objects.is_deleted(found):
             return found
     for group in (context.selected_objects, context.scene.objects):
         sheets = [item for item in group if drawing_objects.is_sheet(item)]

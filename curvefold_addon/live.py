@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from .. import solver
-from .bridge import baking, by_hand, controls, drawing, hooks, linked, papers, state
+from .bridge import baking, by_hand, controls, drawing, hooks, linked, papers, placing, state
 from .bridge.drawing_objects import creases_of, is_part, sheet_of
 from .bridge.report import CreaseReport, Report, describe, describe_crease, describe_fault
 from .bridge.session import Session, carried_session, stored_session
@@ -27,6 +27,8 @@ __all__ = ["CreaseReport", "Report", "rebuild", "report", "session", "settle", "
 DRAWING_RESTS = 0.25
 #: Iterations after which a fold that is waited for is left as it is.
 SETTLING = 1500
+#: Scales whose difference is a smaller part of them are the same: their rounding.
+SAME_SCALE = 1e-5
 #: What is said of a paper that does not follow, since following would write over what somebody did to its mesh.
 BY_HAND = "Its mesh was changed by hand: Restore the Paper throws that away, Make Ordinary Mesh keeps it"
 
@@ -106,6 +108,7 @@ def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
     check_writable(mesh)
     uid = mesh.session_uid
     found = make_session(paper)
+    _note_scale(paper)
     _stale.pop(uid, None)
     wanted = _wanted_source(mesh)
     if not found.source.meets(wanted):
@@ -188,6 +191,7 @@ def adopt(paper: bpy.types.Object, made: Session) -> None:
     _look_again()
     made.rest_if_flat(_inputs(paper, made))
     made.write(paper.data)
+    _follow_scale(paper)
 
 
 def flatten(paper: bpy.types.Object) -> None:
@@ -246,6 +250,12 @@ def drop(mesh: bpy.types.Mesh) -> None:
         known.pop(uid, None)
     _awake.discard(uid)
     _look_again()
+
+
+def sheet_here(settings: bpy.types.PropertyGroup) -> bpy.types.Object | None:
+    """The sheet of a paper; None where it has none, and where that is not in the scene."""
+    sheet = settings.sheet
+    return None if sheet is None or sheet.name not in bpy.context.scene.objects else sheet
 
 
 def paper_of(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
@@ -352,6 +362,10 @@ def park() -> None:
     _broken.clear()
     _look_again()
     _awake.clear()
+    for uid in list(_watched().papers):
+        paper = _paper(uid)
+        if paper is not None:
+            paper.update_tag()  # Blender does not see that its scale was changed after the step was written
     _rouse(set(_watched().papers))
 
 
@@ -457,9 +471,9 @@ def _wanted_source(mesh: bpy.types.Mesh) -> state.Source:
     """
     settings = mesh.curvefold
     stored = state.load_source(mesh)
-    sheet = settings.sheet
+    sheet = sheet_here(settings)
     # A paper whose drawing is gone keeps it.
-    if sheet is None or sheet.name not in bpy.context.scene.objects:
+    if sheet is None:
         return stored.told(settings.resolution)
     drawn = drawing.read_drawing(sheet)
     # Creases are gone when the last one is deleted, or when the paper was appended to another file without them.
@@ -469,6 +483,44 @@ def _wanted_source(mesh: bpy.types.Mesh) -> state.Source:
             element=sheet.name,
         )
     return state.source_of(drawn, settings.resolution)
+
+
+def _follow_scale(paper: bpy.types.Object) -> None:
+    """The paper's net is as large as its sheet in the sheet's own coordinates: where the sheet's scale has changed,
+    what shows the paper is scaled with it, unless somebody has done that already.
+    """
+    settings = paper.data.curvefold
+    sheet = sheet_here(settings)
+    if sheet is None:
+        return
+    grown = _ratio(placing.mean_scale(sheet), settings.sheet_scale)
+    followed = _ratio(placing.mean_scale(paper), settings.paper_scale)
+    if grown != 1.0 and followed == 1.0:
+        for item in bpy.data.objects:
+            if item.data == paper.data:
+                item.scale *= grown
+    settings.sheet_scale, settings.paper_scale = placing.mean_scale(sheet), placing.mean_scale(paper)
+
+
+def _note_scale(paper: bpy.types.Object) -> None:
+    """Keeps in mind that somebody has scaled the paper alone; where the sheet was scaled, it is looked at anew."""
+    settings = paper.data.curvefold
+    sheet = sheet_here(settings)
+    if sheet is None:
+        return
+    if _ratio(placing.mean_scale(sheet), settings.sheet_scale) != 1.0:
+        _stale.setdefault(paper.data.session_uid, time.monotonic())  # undo tells nobody
+        return
+    own = placing.mean_scale(paper)
+    if settings.sheet_scale == 0.0 or _ratio(own, settings.paper_scale) != 1.0:
+        settings.sheet_scale, settings.paper_scale = placing.mean_scale(sheet), own
+
+
+def _ratio(now: float, before: float) -> float:
+    """How many times as large a scale has become; 1 where that is rounding, or not known."""
+    if not (now > 0.0 and before > 0.0) or abs(now - before) <= SAME_SCALE * before:
+        return 1.0
+    return now / before
 
 
 def _unparked(uid: int, shape: state.StoredShape) -> Session | None:
@@ -512,6 +564,7 @@ def _follow(uid: int, deadline: float, transforming: bool) -> bool:
     if paper is None or not _may_move(paper) or paper.mode != "OBJECT":
         return False
     mesh = paper.data
+    _note_scale(paper)
     if is_playing() and hooks.is_animated(paper):
         return False  # frames count, not the clock; the end of the playback wakes it
     if uid not in _making and uid not in _sessions:
@@ -546,12 +599,14 @@ def _follow(uid: int, deadline: float, transforming: bool) -> bool:
             wanted = _wanted_source(mesh)
         except (solver.CurvefoldError, state.StateError) as error:
             _faults[uid] = str(error)  # it goes on as it was
+            _follow_scale(paper)
         else:
             if not found.source.meets(wanted):
                 found.write(mesh)  # what undo may just have led to
                 _making[uid] = pool().submit(carried_session, wanted, found.snapshot())
                 return True
             _faults.pop(uid, None)
+            _follow_scale(paper)
     inputs = _inputs(paper, found)
     if not transforming and found.is_back_at_start(inputs):
         found.return_to_start()

@@ -30,6 +30,9 @@ class MainPanel(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         paper, sheet = live.active_paper(context), drawing_context.active_sheet(context)
+        active = context.active_object
+        if active is not None and drawing_objects.has_lost_sheet(active):
+            say(self.layout, context, f"{active.name} {wording.LOST_CREASE}", "ERROR", alert=True)
         if paper is not None and not _is_drawing(context):
             _draw_standing(self.layout, context, paper)
         elif sheet is not None:
@@ -123,6 +126,12 @@ def _draw_standing(layout: bpy.types.UILayout, context: bpy.types.Context, paper
         say(box, context, wording.NOT_LIVE, "PAUSE")
     elif settings.fold == 0.0 and not settings.handles:
         say(box, context, wording.NEXT if settings.creases else wording.NEXT_BLANK, "INFO")
+    sheet = settings.sheet
+    # A paper that has none, and has compared its scale with one, has lost it for good.
+    if settings.sheet_scale > 0.0 if sheet is None else drawing_objects.is_deleted(sheet):
+        say(box, context, wording.SHEET_DELETED, "ERROR")
+    elif sheet is not None and live.sheet_here(settings) is None:
+        say(box, context, wording.SHEET_ELSEWHERE, "INFO")
     column = layout.column()
     column.scale_y = 1.3
     column.prop(settings, "fold", slider=True)
@@ -201,8 +210,9 @@ class DrawingPanel(PaperPanel, bpy.types.Panel):
         settings = live.active_paper(context).data.curvefold
         self.layout.prop(settings, "sheet", text="")
         # With a part of the drawing active, the main panel has them.
-        if settings.sheet is not None and not _is_drawing(context):
-            _draw_drawing_tools(self.layout, context, settings.sheet)
+        sheet = live.sheet_here(settings)
+        if sheet is not None and not _is_drawing(context):
+            _draw_drawing_tools(self.layout, context, sheet)
 
 
 class OverlaysPanel(Tab, bpy.types.Panel):

@@ -40,6 +40,13 @@ def _rebuild(settings: bpy.types.bpy_struct, context: bpy.types.Context) -> None
     live.rebuild(settings.id_data)
 
 
+def _resheet(settings: bpy.types.bpy_struct, context: bpy.types.Context) -> None:
+    """Another drawing, or none: a sheet that somebody takes away was not deleted."""
+    if settings.sheet is None:
+        settings.sheet_scale = 0.0
+    _rebuild(settings, context)
+
+
 def _rehook(handle: bpy.types.bpy_struct, context: bpy.types.Context) -> None:
     """Another hook: the point stays where it is."""
     live.rehook(handle.id_data, handle)
@@ -97,8 +104,11 @@ class PaperSettings(bpy.types.PropertyGroup):
 
     is_paper: BoolProperty(default=False, options={"HIDDEN"})
     sheet: PointerProperty(
-        name="Drawing", description="The sheet whose drawing is folded", type=bpy.types.Object, update=_rebuild
+        name="Drawing", description="The sheet whose drawing is folded", type=bpy.types.Object, update=_resheet
     )
+    #: Scales of the sheet and of the paper's object when they were last compared; 0 without a sheet.
+    sheet_scale: FloatProperty(default=0.0, options={"HIDDEN"})
+    paper_scale: FloatProperty(default=0.0, options={"HIDDEN"})
     resolution: resolution_property(soft_max=80, update=_rebuild)
     live: BoolProperty(
         name="Live", description="The paper follows its handles and its drawing", default=True, update=wake

@@ -25,6 +25,11 @@ ASLEEP = "Asleep: it wakes when something moves"
 NOT_LIVE = "Not live: it stays as it is"
 KEYED = "Its shape keys hide how it folds: remove them"
 BAKED = "Baked: it plays its shape keys"
+SHEET_DELETED = (
+    "Its sheet was deleted: the paper keeps its shape and its creases; choose another sheet under Drawing, or none"
+)
+SHEET_ELSEWHERE = "Its sheet is not in this scene: the paper keeps its shape and its creases"
+LOST_CREASE = "lies on no sheet any more: select it and a sheet, and Make Crease lays it there"
 NO_RULINGS_BAKED = "A baked paper shows no rulings and no Gauss image: free the bake"
 NO_RULINGS_ASLEEP = "Asleep: rulings and Gauss image come when it wakes"
 

@@ -21,7 +21,7 @@ from ...solver.pattern.rings import JOIN, outer_rings
 from ...solver.pattern.segments import MAX_POINTS, Curve, Segment, Subpath, sample
 from . import drawing_objects
 from .mesh import metres_per_unit
-from .placing import matrix_on, world_matrix
+from .placing import matrix_on, mean_scale, world_matrix
 from .splines import Strand, add_bezier_spline, add_poly_spline, read_strands
 
 Array = NDArray[np.float64]
@@ -218,7 +218,7 @@ class _Reading:
             self.trouble(
                 "it is scaled unevenly, so the paper is not as it looks; apply its scale", self._sheet, None
             )
-        return 1000.0 * float(_metres_in_a_unit() * np.sqrt(area))
+        return 1000.0 * _metres_in_a_unit() * mean_scale(self._sheet)
 
     # ---- the border
 

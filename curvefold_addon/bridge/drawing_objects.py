@@ -125,6 +125,19 @@ def sheet_of(item: Any) -> Any:
     return node
 
 
+def is_deleted(item: Any) -> bool:
+    """Whether an object is in no scene any more; what refers to it, as papers do to their sheet, keeps it."""
+    return not item.users_scene
+
+
+def has_lost_sheet(crease: Any) -> bool:
+    """Whether an object is a crease whose sheet was deleted, or from which it was taken."""
+    if not is_crease(crease):
+        return False
+    sheet = sheet_of(crease)
+    return sheet is None or is_deleted(sheet)
+
+
 def creases_of(sheet: Any) -> list[Any]:
     """The crease objects of a sheet, by name (2 before 10), leaving out deleted ones."""
     below = [child for child in sheet.children_recursive if is_crease(child) and sheet_of(child) == sheet]

@@ -18,6 +18,12 @@ def world_matrix(item: Any) -> Array:
     return matrix if rest is None else np.array(rest.matrix_world, dtype=np.float64) @ matrix
 
 
+def mean_scale(item: Any) -> float:
+    """How many times as large as in its own coordinates an object's XY plane is in the world."""
+    matrix = world_matrix(item)
+    return float(np.sqrt(np.linalg.norm(np.cross(matrix[:3, 0], matrix[:3, 1]))))
+
+
 def matrix_on(sheet: Any, item: Any) -> Array:
     """(4,4) from an object's coordinates to a sheet's. Exact where the object hangs below the
     sheet; otherwise a sheet whose scale is zero raises PatternError."""

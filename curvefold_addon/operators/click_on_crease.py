@@ -26,7 +26,7 @@ class ClickOnCrease(OnPaper):
         drawing_tool.leave_edit_mode(context)
         paper = live.active_paper(context)
         try:
-            self.check(paper)
+            live.check_follows(paper.data)
         except StateError as error:
             return self.refuse(str(error))
         self._paper = paper.name
