@@ -6,6 +6,7 @@ import bpy
 from bpy.props import FloatVectorProperty, StringProperty
 
 from .. import drawing_tool, handle_making, live
+from ..bridge.state import StateError
 from ..bridge.surface_points import SurfacePoint
 from ..drawing_context import select_only
 from .on_paper import OnPaper
@@ -25,11 +26,15 @@ class AddHandle(OnPaper, bpy.types.Operator):
         name="Paper", description="Which paper; the active one when empty", options={"HIDDEN", "SKIP_SAVE"}
     )
 
+    def meant(self, context: bpy.types.Context) -> bpy.types.Object | None:
+        return context.scene.objects.get(self.paper) if self.paper else super().meant(context)
+
+    def check(self, paper: bpy.types.Object | None) -> None:
+        if paper is None or paper.type != "MESH" or not paper.data.curvefold.is_paper:
+            raise StateError(f"There is no paper {self.paper}")
+        super().check(paper)
+
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
-        if self.paper:
-            paper = context.scene.objects.get(self.paper)
-            if paper is None or paper.type != "MESH" or not paper.data.curvefold.is_paper:
-                return self.refuse(f"There is no paper {self.paper}")
         drawing_tool.leave_edit_mode(context)
         at = tuple(self.at)
         point = SurfacePoint(at, live.make_session(paper).place_of(at))

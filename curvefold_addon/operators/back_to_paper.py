@@ -14,6 +14,10 @@ class BackToPaper(OnPaper, bpy.types.Operator):
     bl_idname = "curvefold.back_to_paper"
     bl_label = "Back to the Paper"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+    only_looks = True
+
+    def meant(self, context: bpy.types.Context) -> bpy.types.Object | None:
+        return drawing_context.meant_paper(context)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -22,8 +26,7 @@ class BackToPaper(OnPaper, bpy.types.Operator):
             return False
         return True
 
-    def act(self, context: bpy.types.Context, paper: bpy.types.Object | None) -> set[str]:
-        paper = drawing_context.meant_paper(context)
+    def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
         if not paper.visible_get():
             return self.refuse(f"{paper.name} is hidden: show it to go on with it")
         drawing_tool.leave_edit_mode(context)

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import bpy
 
-from .. import live, wording
+from .. import later_work, live, wording
 from ..bridge import baking, linked, state
 from ..drawing_context import in_object_mode
 
@@ -29,6 +29,7 @@ class MakeOrdinaryMesh(bpy.types.Operator):
             return False
         return in_object_mode(cls, context)
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         chosen = _papers(context)
         made = []

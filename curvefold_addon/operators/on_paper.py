@@ -29,7 +29,7 @@ class OnPaper:
 
     @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
-        paper = live.active_paper(context)
+        paper = self.meant(context)
         try:
             if not self.only_looks:
                 self.check(paper)
@@ -37,6 +37,10 @@ class OnPaper:
         except (solver.CurvefoldError, StateError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+
+    def meant(self, context: bpy.types.Context) -> bpy.types.Object | None:
+        """The paper that the operator works on."""
+        return live.active_paper(context)
 
     def check(self, paper: bpy.types.Object) -> None:
         """Before anything is changed. Raises StateError where the paper would not follow."""

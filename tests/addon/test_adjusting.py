@@ -188,8 +188,14 @@ def sheet_from_object(sheet):
     bpy.ops.curvefold.sheet_from_object("EXEC_DEFAULT", True)
 
 
+def make_ordinary_mesh(sheet):
+    bpy.ops.curvefold.make_paper(resolution=12)
+    bpy.ops.ed.undo_push(message="paper")
+    bpy.ops.curvefold.make_ordinary_mesh("EXEC_DEFAULT", True)
+
+
 #: Those that cannot be called where they have been called just now, so that Blender does not adjust them.
-DONE_ONCE = (make_crease, sheet_from_object)
+DONE_ONCE = (make_crease, sheet_from_object, make_ordinary_mesh)
 
 
 @pytest.mark.parametrize("do", DONE_ONCE)

@@ -10,6 +10,7 @@ SENTENCE = "is linked from library.blend; make it local to change it"
 #: Operators that change the active paper.
 ON_PAPERS = {
     "add_angles",
+    "add_handle",
     "add_handles",
     "bake",
     "flatten",
@@ -40,6 +41,7 @@ ON_DRAWINGS = {"draw_crease", "make_crease", "set_assignment"}
 NEUTRAL = {
     "add_sample",
     "add_sheet",
+    "back_to_paper",
     "check_paper",
     "fold_drawing",
     "follow",
