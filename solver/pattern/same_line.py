@@ -33,10 +33,11 @@ def without_copies(strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[str]]:
     return kept, _twice(len(strokes) - len(kept))
 
 
-def settle_same_lines(strokes: Sequence[Stroke], tolerance: float) -> tuple[list[Stroke], list[str], list[str]]:
-    """The strokes without creases that lie on earlier ones; notes; and what is drawn as a mountain and as a valley.
+def settle_same_lines(strokes: Sequence[Stroke], tolerance: float) -> tuple[list[Stroke], list[str]]:
+    """The strokes without creases that lie on earlier ones, and notes.
 
-    A crease that is both has no side of its own. tolerance: how near two lines are the same, drawing units.
+    A crease that is drawn as a mountain and as a valley has no side of its own, and says so.
+    tolerance: how near two lines are the same, drawing units.
     """
     creases = [k for k, stroke in enumerate(strokes) if stroke.decision.role in _CREASES]
     copies = 0
@@ -56,17 +57,17 @@ def settle_same_lines(strokes: Sequence[Stroke], tolerance: float) -> tuple[list
         if roles == {Role.MOUNTAIN, Role.VALLEY}:
             conflicts.append(_in_words(kept, strokes[other], lines[b]))
             decision = Decision(Role.CREASE, "drawn as a mountain and as a valley", kept.decision.detail)
-            changed[one] = replace(kept, decision=decision)
+            changed[one] = replace(kept, decision=decision, conflict=conflicts[-1])
         else:
             copies += 1
-            if kept.decision.role is Role.CREASE and "drawn as a mountain" not in kept.decision.why:
+            if kept.decision.role is Role.CREASE and not kept.conflict:
                 changed[one] = replace(kept, decision=strokes[other].decision)
     notes = [f"{conflict}; it is left unassigned" for conflict in conflicts[:_MOST_SAID]]
     if len(conflicts) > _MOST_SAID:
         notes.append(f"{len(conflicts) - _MOST_SAID:,} more lines are drawn as mountains and as valleys")
     notes += _twice(copies)
     out = {creases[a] for a in dropped}
-    return [changed.get(k, stroke) for k, stroke in enumerate(strokes) if k not in out], notes, conflicts
+    return [changed.get(k, stroke) for k, stroke in enumerate(strokes) if k not in out], notes
 
 
 def _twice(copies: int) -> list[str]:

@@ -44,11 +44,11 @@ def make_patterns(lines: Lines, border: str) -> tuple[CreasePattern, ...]:
     if not size > 0.0:
         raise PatternError("the drawing has no size: all its lines are one point", notes=lines.notes)
     try:
-        strokes, twice, conflicts = settle_same_lines(lines.strokes, JOIN * size)
+        strokes, twice = settle_same_lines(lines.strokes, JOIN * size)
         marked = any(stroke.decision.role in CREASE_ROLES for stroke in strokes)
         found = find_sheets(Search(strokes, lines.filled, lines.page, size, marked), border)
         notes = (*twice, *found.notes)
-        return _patterns(lines, strokes, found, size, marked, notes, (*lines.conflicts, *conflicts))
+        return _patterns(lines, strokes, found, size, marked, notes)
     except PatternError as error:
         roles = Counter((s.decision.detail, s.decision.role.value, s.decision.why) for s in lines.strokes)
         raise error.with_notes((*_in_words(roles), *lines.notes)) from error
@@ -61,7 +61,6 @@ def _patterns(
     size: float,
     marked: bool,
     notes: Sequence[str],
-    conflicts: Sequence[str],
 ) -> tuple[CreasePattern, ...]:
     """One pattern a sheet; what lies beside all of them is told with the first."""
     tree = shapely.STRtree(curve_lines([stroke.curve for stroke in strokes]))
@@ -82,7 +81,7 @@ def _patterns(
         own = replace(ring, members=frozenset(local[i] for i in ring.members))
         sheet = _Sheet([strokes[i] for i in mine], size, marked, looks)
         left_out = found.holes[number - 1] if found.holes else ()
-        patterns.append(sheet.pattern(own, left_out, lines, [] if number > 1 else apart, notes, conflicts))
+        patterns.append(sheet.pattern(own, left_out, lines, [] if number > 1 else apart, notes))
     return tuple(patterns)
 
 
@@ -116,7 +115,6 @@ class _Sheet:
         lines: Lines,
         apart: Sequence[Stroke],
         notes: Sequence[str],
-        conflicts: Sequence[str],
     ) -> CreasePattern:
         for i in sheet.members:
             self._settle(i, "border")
@@ -132,7 +130,7 @@ class _Sheet:
             creases,
             unit_mm=lines.unit_mm,
             notes=(*_in_words(fates), *notes, *said, *lines.notes),
-            conflicts=conflicts,
+            conflicts=(*lines.conflicts, *(s.conflict for s in self._strokes if s.conflict)),
         )
 
     # ---- small helpers

@@ -49,8 +49,9 @@ class Decision:
 class Stroke:
     """One line with what is thought of it.
 
-    count  how many strokes of the file it is made of, where they continue each other
-    fate   what became of it, for the notes
+    count     how many strokes of the file it is made of, where they continue each other
+    conflict  that it is drawn as a mountain and as a valley, in words; else empty
+    fate      what became of it, for the notes
     """
 
     curve: Curve
@@ -58,6 +59,7 @@ class Stroke:
     name: str
     opacity: float = 1.0
     count: int = 1
+    conflict: str = ""
     fate: str = ""
 
 

@@ -152,6 +152,19 @@ def test_sides_that_contradict_each_other_do_not_bind() -> None:
         solver.fold(pattern, solver.FoldDescription(assignments="bind"))
 
 
+def test_a_contradiction_on_one_sheet_leaves_the_others_free(tmp_path: Path) -> None:
+    path = tmp_path / "two.svg"
+    twice = "".join(f'<path d="M120 40H180" stroke="{colour}"/>' for colour in ("red", "blue"))
+    path.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 60"><g fill="none" stroke="#000">'
+        '<rect width="60" height="60"/><rect x="120" width="60" height="60"/></g>'
+        f'<path d="M0 20H60" stroke="red"/><path d="M0 40H60" stroke="blue"/>{twice}</svg>'
+    )
+    first, second = solver.read_patterns(path)
+    assert first.conflicts == ()
+    assert len(second.conflicts) == 1
+
+
 # ---- folded, by what the drive makes of the reading
 
 
