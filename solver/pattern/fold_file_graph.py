@@ -6,9 +6,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from ..arrays import FloatArray, IntArray
 from ..errors import PatternError
@@ -24,7 +21,7 @@ from .fold_file_values import (
     letters,
     letters_of_angles,
 )
-from .rings import JOIN, MAX_NEAR
+from .rings import JOIN, meeting_places
 from .segments import MAX_POINTS, STRAIGHT
 
 #: Letters of edges that are lines of the drawing; the others are lines of a mesh.
@@ -195,15 +192,10 @@ def _joined_ends(points: FloatArray, ends: IntArray, letter: Any, tolerance: flo
     loose = np.flatnonzero(np.bincount(lines.ravel(), minlength=len(points)) == 1)
     if len(loose) < 2:
         return None
-    tree = cKDTree(points[loose])
-    if tree.count_neighbors(tree, tolerance) > MAX_NEAR:
-        raise PatternError("too many lines end in the same place")
-    pairs = tree.query_pairs(tolerance, output_type="ndarray")
-    if not len(pairs):
-        return None
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(loose),) * 2)
-    _, label = connected_components(graph, directed=False)
+    label = meeting_places(points[loose], tolerance)
     _, first = np.unique(label, return_index=True)
+    if len(first) == len(loose):
+        return None
     target = np.arange(len(points))
     target[loose] = loose[first[label]]
     return target

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any
@@ -169,8 +168,3 @@ def crease_numbers(values: Any, places: IntArray) -> IntArray:
 
 def _edges(count: int) -> str:
     return "1 edge" if count == 1 else f"{count:,} edges"
-
-
-def count_edges(letter: Any, wanted: Sequence[str]) -> str:
-    """ "3 edges", of those with a letter among ``wanted``."""
-    return _edges(int(np.isin(letter, list(wanted)).sum()))

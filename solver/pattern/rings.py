@@ -302,22 +302,6 @@ def lines_at(lines: Geometries, points: FloatArray, tolerance: float) -> IntArra
     return counts
 
 
-def share_inside(polygon: shapely.Polygon, curves: Sequence[Curve], tolerance: float) -> float:
-    """How much of the curves' length lies in ``polygon``, 0 to 1; 1 when there are none."""
-    if not curves:
-        return 1.0
-    lines = curve_lines(curves)
-    grown = polygon.buffer(tolerance)
-    shapely.prepare(grown)
-    total = float(shapely.length(lines).sum())
-    covered = shapely.covers(grown, lines)
-    inside = float(shapely.length(lines[covered]).sum())
-    rest = lines[~covered & shapely.intersects(grown, lines)]
-    if len(rest):
-        inside += float(shapely.length(shapely.intersection(rest, grown)).sum())
-    return inside / total if total > 0 else 1.0
-
-
 def touching_groups(curves: Sequence[Curve], indices: Sequence[int], tolerance: float) -> list[list[int]]:
     """``indices`` in groups whose curves touch each other, directly or through others."""
     if not indices:

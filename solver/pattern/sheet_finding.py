@@ -10,7 +10,7 @@ import shapely
 
 from ..arrays import FloatArray
 from ..errors import PatternError
-from .rings import JOIN, Gap, Geometries, Ring, curve_lines, loose_ends, outer_rings, share_inside, touching_groups
+from .rings import JOIN, Gap, Geometries, Ring, curve_lines, loose_ends, outer_rings, touching_groups
 from .segments import Curve
 from .stroke import CREASE_ROLES, EDGE_ROLES, Role, Stroke
 
@@ -363,9 +363,10 @@ def _open_place(search: Search) -> Gap | None:
     """Where a border is open that would hold the creases if it were closed, and how wide; None without one."""
     edges = search.having(EDGE_ROLES)
     candidates = edges + search.having([Role.DARK]) if search.marked or edges else []
-    creases = search.some(search.having(CREASE_ROLES))
-    if not creases:
+    creases = curve_lines(search.some(search.having(CREASE_ROLES)))
+    if not len(creases):
         return None
+    total, tree = float(shapely.length(creases).sum()), shapely.STRtree(creases)
     for group in touching_groups(search.curves, candidates, search.tolerance):
         curves = search.some(i for i in group if not search.curves[i].closed)
         if not curves:
@@ -377,7 +378,8 @@ def _open_place(search: Search) -> Gap | None:
         a, b = ends[loose]
         closing = Curve(np.array([a, b]), False, None)
         for ring in outer_rings([*curves, closing], range(len(curves) + 1), search.size)[:1]:
-            if share_inside(ring.polygon, creases, search.tolerance) >= _SHARE_NAMED:
+            held = _length_inside(ring.polygon.buffer(search.tolerance), creases, tree)
+            if held >= _SHARE_NAMED * total:
                 return Gap(0.5 * (a + b), float(np.hypot(*(b - a))))
     return None
 
