@@ -39,20 +39,18 @@ class CreasePoint:
 
 def under_ray(mesh: Any, origin: Any, direction: Any) -> SurfacePoint | None:
     """The first point of the paper along a ray in its local coordinates."""
-    place, _, face, _ = _tree(mesh).ray_cast(Vector(origin), Vector(direction))
-    return None if place is None else _on_face(mesh, face, place)
+    place, _, face, _ = tree(mesh).ray_cast(Vector(origin), Vector(direction))
+    return None if place is None else on_face(mesh, face, place)
 
 
-def crease_under_ray(mesh: Any, origin: Any, direction: Any) -> CreasePoint | None:
-    """The point of a crease that is nearest to where a ray in the paper's local coordinates first meets the paper.
+def crease_nearest(mesh: Any, place: Any) -> CreasePoint | None:
+    """The point of a crease that is nearest to a place of the paper in its local coordinates.
 
-    None where the ray misses, and on a paper without creases. Raises StateError.
+    None on a paper without creases. Raises StateError.
     """
-    place, *_ = _tree(mesh).ray_cast(Vector(origin), Vector(direction))
-    if place is None:
-        return None
+    place = Vector(place)
     best, best_gap, best_part = None, float("inf"), 0.0
-    for edge, item in zip(mesh.edges, _layer(mesh, mesh.attributes, CREASE).data, strict=True):
+    for edge, item in zip(mesh.edges, layer(mesh, mesh.attributes, CREASE).data, strict=True):
         if item.value == NO_CREASE:
             continue
         start, end = (mesh.vertices[k].co for k in edge.vertices)
@@ -71,14 +69,14 @@ def crease_under_ray(mesh: Any, origin: Any, direction: Any) -> CreasePoint | No
 
 def nearest(mesh: Any, place: Any) -> SurfacePoint:
     """The point of the paper that is nearest to a place in its local coordinates."""
-    found, _, face, _ = _tree(mesh).find_nearest(Vector(place))
-    return _on_face(mesh, face, found)
+    found, _, face, _ = tree(mesh).find_nearest(Vector(place))
+    return on_face(mesh, face, found)
 
 
 def selected(mesh: Any) -> list[SurfacePoint]:
     """The selected vertices of a mesh in Edit Mode."""
     edited = bmesh.from_edit_mesh(mesh)
-    flat = _layer(mesh, edited.loops.layers.uv, FLAT_UV)
+    flat = layer(mesh, edited.loops.layers.uv, FLAT_UV)
     points = []
     for vertex in edited.verts:
         if vertex.select and vertex.link_loops:
@@ -90,7 +88,7 @@ def selected(mesh: Any) -> list[SurfacePoint]:
 def selected_on_creases(mesh: Any) -> list[Point]:
     """On the flat sheet, the vertices on creases that are selected in Edit Mode. Raises StateError."""
     edited = bmesh.from_edit_mesh(mesh)
-    flat, crease = _layer(mesh, edited.loops.layers.uv, FLAT_UV), _layer(mesh, edited.edges.layers.int, CREASE)
+    flat, crease = layer(mesh, edited.loops.layers.uv, FLAT_UV), layer(mesh, edited.edges.layers.int, CREASE)
     points = []
     for vertex in edited.verts:
         if vertex.select and vertex.link_loops and any(e[crease] != NO_CREASE for e in vertex.link_edges):
@@ -102,7 +100,7 @@ def selected_on_creases(mesh: Any) -> list[Point]:
 def selected_patches(mesh: Any) -> list[Point]:
     """A point of the flat sheet in each patch of which a face is selected in Edit Mode."""
     edited = bmesh.from_edit_mesh(mesh)
-    flat, patch = _layer(mesh, edited.loops.layers.uv, FLAT_UV), _layer(mesh, edited.faces.layers.int, PATCH)
+    flat, patch = layer(mesh, edited.loops.layers.uv, FLAT_UV), layer(mesh, edited.faces.layers.int, PATCH)
     largest: dict[int, Any] = {}
     for face in edited.faces:
         if face.select and (face[patch] not in largest or face.calc_area() > largest[face[patch]].calc_area()):
@@ -117,7 +115,7 @@ def selected_patches(mesh: Any) -> list[Point]:
 def selected_borders(mesh: Any) -> list[tuple[Point, Point]]:
     """Ends, on the flat sheet, of each stretch of the border whose vertices are selected in Edit Mode."""
     edited = bmesh.from_edit_mesh(mesh)
-    flat = _layer(mesh, edited.loops.layers.uv, FLAT_UV)
+    flat = layer(mesh, edited.loops.layers.uv, FLAT_UV)
     edges = [e for e in edited.edges if e.is_boundary and all(v.select for v in e.verts)]
     near: dict[Any, list[Any]] = {}
     for edge in edges:
@@ -139,8 +137,11 @@ def selected_borders(mesh: Any) -> list[tuple[Point, Point]]:
     return stretches
 
 
-def _layer(mesh: Any, layers: Any, name: str) -> Any:
-    """Raises StateError when somebody has taken it away; the paper is mended when it is next written."""
+def layer(mesh: Any, layers: Any, name: str) -> Any:
+    """One of a paper's layers. Raises StateError when somebody has taken it away.
+
+    The paper is mended when it is next written.
+    """
     layer = layers.get(name)
     if layer is None:
         raise StateError(f"{mesh.name} has lost its {name} layer; settle the paper in Object Mode to mend it")
@@ -149,20 +150,21 @@ def _layer(mesh: Any, layers: Any, name: str) -> Any:
 
 def _flat_places(mesh: Any, vertices: Sequence[int]) -> list[Any]:
     """Where vertices are on the flat sheet."""
-    flat = _layer(mesh, mesh.uv_layers, FLAT_UV).uv
+    flat = layer(mesh, mesh.uv_layers, FLAT_UV).uv
     found = {loop.vertex_index: loop.index for loop in mesh.loops if loop.vertex_index in vertices}
     return [flat[found[vertex]].vector.copy() for vertex in vertices]
 
 
-def _tree(mesh: Any) -> Any:
+def tree(mesh: Any) -> Any:
     """Of the paper itself, without modifiers, so that faces can be told."""
     return BVHTree.FromPolygons(
         [vertex.co for vertex in mesh.vertices], [tuple(polygon.vertices) for polygon in mesh.polygons]
     )
 
 
-def _on_face(mesh: Any, face: int, place: Any) -> SurfacePoint:
-    flat = _layer(mesh, mesh.uv_layers, FLAT_UV).uv
+def on_face(mesh: Any, face: int, place: Any) -> SurfacePoint:
+    """A place on a face of the paper."""
+    flat = layer(mesh, mesh.uv_layers, FLAT_UV).uv
     mesh.calc_loop_triangles()
     best, best_gap = None, float("inf")
     for triangle in mesh.loop_triangles:

@@ -3,7 +3,7 @@
 import bpy
 
 from ... import solver
-from .. import later_work, live
+from .. import drawing_tool, later_work, live
 from ..bridge import linked
 from ..bridge.state import StateError
 
@@ -52,6 +52,44 @@ class OnPaper:
         """Says why nothing was done."""
         self.report({"ERROR"}, sentence)
         return {"CANCELLED"}
+
+
+class AwaitsClicks(OnPaper):
+    """An operator that waits for clicks on the paper in a 3D view.
+
+    what: it deals with, in the plural; without_mouse: what to do instead
+    """
+
+    what: str
+    cursor: str
+    help: str
+    without_mouse: str
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if context.area is None or context.area.type != "VIEW_3D":
+            return self.refuse(f"{self.what} are clicked in a 3D view")
+        drawing_tool.leave_edit_mode(context)
+        paper = live.active_paper(context)
+        try:
+            live.check_follows(paper.data)
+        except StateError as error:
+            return self.refuse(str(error))
+        self._paper = paper.name
+        context.window.cursor_modal_set(self.cursor)
+        context.workspace.status_text_set(self.help)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return self.refuse(self.without_mouse)
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        context.window.cursor_modal_restore()
+        context.workspace.status_text_set(None)
+
+    def waiting_paper(self, context: bpy.types.Context) -> bpy.types.Object | None:
+        """The paper that the operator began with, as long as it is there."""
+        return context.scene.objects.get(self._paper)
 
 
 def remove_entry(paper: bpy.types.Object, entries: str, active: str, index: int) -> bool:

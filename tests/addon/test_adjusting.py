@@ -76,7 +76,7 @@ def test_a_new_paper_can_be_adjusted(made):
 def test_a_click_is_what_was_done_last(placing, made):
     fold(made, 40.0)
     for x in (-0.03, 0.03):
-        placing.place_along(bpy.context, the_paper(), Vector((x, 0.03, 1)), DOWN)
+        placing.place_along(bpy.context, the_paper(), placing.MouseRay(Vector((x, 0.03, 1)), DOWN))
     assert last().bl_idname == "CURVEFOLD_OT_add_handle"
     assert adjust(at=(0.01, 0.02)) == {"FINISHED"}
     settings = the_paper().data.curvefold
@@ -88,7 +88,7 @@ def test_a_click_is_what_was_done_last(placing, made):
 
 
 def test_a_point_off_the_sheet_leaves_the_handle_where_it_was(placing, made):
-    placing.place_along(bpy.context, made, Vector((0.03, 0.03, 1)), DOWN)
+    placing.place_along(bpy.context, made, placing.MouseRay(Vector((0.03, 0.03, 1)), DOWN))
     assert adjust(at=(5.0, 5.0)) == {"CANCELLED"}
     (handle,) = the_paper().data.curvefold.handles
     assert handle.at[:] == pytest.approx((0.03, 0.03), abs=1e-6)

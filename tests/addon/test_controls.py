@@ -310,7 +310,7 @@ def test_a_ray_picks_the_crease_nearest_to_where_it_meets_the_paper(extension, f
     picked = []
     for y in (0.045, -0.045):
         origin = Vector(live.session(folded.data).place_of((0.0, y))) + Vector((0, 0, 1))
-        point = clicks.crease_along(folded, origin, Vector((0, 0, -1)))
+        point = clicks.crease_along(folded, clicks.MouseRay(origin, Vector((0, 0, -1))))
         picking.PickCrease.clicked(None, folded, point)
         picked.append(creases(folded)[folded.data.curvefold.active_crease].name)
     assert picked == ["Bottom", "Top"]

@@ -58,7 +58,7 @@ def test_a_ray_places_a_handle_where_it_meets_the_paper(placing, folded_paper, l
     world = paper.matrix_world @ Vector(place)
     normal = (paper.matrix_world.to_3x3() @ Vector((0, 0, 1))).normalized()
     before = positions(paper.data)
-    empty = placing.place_along(bpy.context, paper, world + normal, -normal)
+    empty = placing.place_along(bpy.context, paper, placing.MouseRay(world + normal, -normal))
     handle = handles(paper)[0]
     assert handle.name == empty.name == "Handle 1"
     assert handle.at[:] == pytest.approx((0.02, -0.03), abs=1e-4)
@@ -77,17 +77,17 @@ def test_a_ray_places_a_handle_where_it_meets_the_paper(placing, folded_paper, l
 
 
 def test_a_ray_that_misses_places_nothing(placing, paper):
-    assert placing.place_along(bpy.context, paper, Vector((9, 9, 1)), Vector((0, 0, -1))) is None
+    assert placing.place_along(bpy.context, paper, placing.MouseRay(Vector((9, 9, 1)), Vector((0, 0, -1)))) is None
     assert not handles(paper)
     assert not [thing for thing in bpy.data.objects if thing.type == "EMPTY"]
 
 
 def test_every_name_is_its_own(placing, paper):
     for x in (-0.03, 0.0, 0.03):
-        placing.place_along(bpy.context, paper, Vector((x, 0, 1)), Vector((0, 0, -1)))
+        placing.place_along(bpy.context, paper, placing.MouseRay(Vector((x, 0, 1)), Vector((0, 0, -1))))
     assert [handle.name for handle in handles(paper)] == ["Handle 1", "Handle 2", "Handle 3"]
     assert bpy.ops.curvefold.remove_handle(index=1) == {"FINISHED"}
-    placing.place_along(bpy.context, paper, Vector((0.01, 0.02, 1)), Vector((0, 0, -1)))
+    placing.place_along(bpy.context, paper, placing.MouseRay(Vector((0.01, 0.02, 1)), Vector((0, 0, -1))))
     assert [handle.name for handle in handles(paper)] == ["Handle 1", "Handle 3", "Handle 2"]
     assert paper.data.curvefold.active_handle == 2
 
@@ -99,11 +99,10 @@ def test_without_a_mouse_it_says_what_to_do_instead(paper):
 
 def test_it_begins_only_in_a_3d_view(placing):
     said = []
-    operator = SimpleNamespace(report=lambda kind, text: said.append(text))
+    operator = SimpleNamespace(refuse=said.append, what=placing.PlaceHandle.what)
     for area in (None, SimpleNamespace(type="OUTLINER")):
-        context = SimpleNamespace(area=area)
-        assert placing.PlaceHandle.invoke(operator, context, None) == {"CANCELLED"}
-    assert said == ["Handles are placed in a 3D view"] * 2
+        placing.PlaceHandle.invoke(operator, SimpleNamespace(area=area), None)
+    assert said == ["Handles are clicked in a 3D view"] * 2
 
 
 class Window(SimpleNamespace):
@@ -112,7 +111,8 @@ class Window(SimpleNamespace):
     def __init__(self):
         calls = []
         side = SimpleNamespace(type="UI", x=150, y=0, width=50, height=100)
-        main = SimpleNamespace(type="WINDOW", x=0, y=0, width=200, height=100, data="view")
+        view = SimpleNamespace(perspective_matrix=Matrix())
+        main = SimpleNamespace(type="WINDOW", x=0, y=0, width=200, height=100, data=view)
         area = SimpleNamespace(type="VIEW_3D", regions=[main, side])
         super().__init__(
             calls=calls,
@@ -122,8 +122,12 @@ class Window(SimpleNamespace):
 
 
 @pytest.fixture
-def clicking(placing, paper, monkeypatch):
-    """The operator in mid-run, and a function that gives it events; the view's mouse (x, y) is x, y in mm."""
+def clicking(extension, placing, paper, monkeypatch):
+    """The operator in mid-run, and a function that gives it events; the view's mouse (x, y) is x, y in mm.
+
+    The interface has the scale 0, so that nothing is near the mouse.
+    """
+    rays = extension("curvefold_addon.mouse_ray")
     cls = placing.PlaceHandle
     window = Window()
     context = SimpleNamespace(
@@ -132,16 +136,17 @@ def clicking(placing, paper, monkeypatch):
         workspace=SimpleNamespace(status_text_set=window.calls.append),
         selected_objects=[],
         view_layer=bpy.context.view_layer,
+        preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=0.0)),
     )
     monkeypatch.setattr(
-        placing.view3d_utils,
+        rays.view3d_utils,
         "region_2d_to_origin_3d",
         lambda region, view, at: Vector((at[0] / 1e3, at[1] / 1e3, 1)),
     )
-    monkeypatch.setattr(placing.view3d_utils, "region_2d_to_vector_3d", lambda *_: Vector((0, 0, -1)))
+    monkeypatch.setattr(rays.view3d_utils, "region_2d_to_vector_3d", lambda *_: Vector((0, 0, -1)))
     operator = SimpleNamespace(_paper=paper.name, report=lambda kind, text: window.calls.append(text))
     operator.cancel = lambda c: cls.cancel(operator, c)
-    operator._click = lambda *arguments: cls._click(operator, *arguments)
+    operator.waiting_paper = lambda c: cls.waiting_paper(operator, c)
 
     def send(kind, x=0, y=0, value="PRESS"):
         return cls.modal(operator, context, SimpleNamespace(type=kind, value=value, mouse_x=x, mouse_y=y))
@@ -237,7 +242,7 @@ def test_pinned_vertices_stay(folded_paper, live):
 
 def test_the_active_handle_is_pinned_where_it_is(placing, folded_paper, live):
     paper = folded_paper
-    placing.place_along(bpy.context, paper, Vector((0.0, 0.02, 1)), Vector((0, 0, -1)))
+    placing.place_along(bpy.context, paper, placing.MouseRay(Vector((0.0, 0.02, 1)), Vector((0, 0, -1))))
     handle = handles(paper)[0]
     place = live.session(paper.data).place_of(tuple(handle.at))
     assert bpy.ops.curvefold.pin() == {"FINISHED"}
@@ -266,7 +271,9 @@ def test_an_object_of_ones_own_stays_when_its_handle_is_pinned(folded_paper):
 def two(placing, paper):
     """(settings, the empties of two handles); the second was placed last."""
     places = ((0.0, 0.03, 1), (0.0, -0.03, 1))
-    empties = [placing.place_along(bpy.context, paper, Vector(at), Vector((0, 0, -1))) for at in places]
+    empties = [
+        placing.place_along(bpy.context, paper, placing.MouseRay(Vector(at), Vector((0, 0, -1)))) for at in places
+    ]
     return paper.data.curvefold, empties
 
 
@@ -387,7 +394,7 @@ def test_hooking_needs_others_and_the_paper_last(paper):
 def test_another_hook_or_none_keeps_the_point_where_it_is(placing, folded_paper, live):
     """As the panel's field does it."""
     paper = folded_paper
-    placing.place_along(bpy.context, paper, Vector((0.0, 0.02, 1)), Vector((0, 0, -1)))
+    placing.place_along(bpy.context, paper, placing.MouseRay(Vector((0.0, 0.02, 1)), Vector((0, 0, -1))))
     before = positions(paper.data)
     handle = handles(paper)[0]
     handle.hook = loose_empty((0.3, 0.3, 0.3))
@@ -404,7 +411,7 @@ def test_another_hook_or_none_keeps_the_point_where_it_is(placing, folded_paper,
 
 
 def test_a_removed_handle_takes_its_empty_with_it(placing, paper):
-    empty = placing.place_along(bpy.context, paper, Vector((0, 0, 1)), Vector((0, 0, -1)))
+    empty = placing.place_along(bpy.context, paper, placing.MouseRay(Vector((0, 0, 1)), Vector((0, 0, -1))))
     name = empty.name
     assert bpy.ops.curvefold.remove_handle() == {"FINISHED"}
     assert not handles(paper)
@@ -444,7 +451,7 @@ def test_no_such_handle(paper, index):
 
 def test_flatten_lays_paper_and_handles_flat(placing, folded_paper, live):
     paper = folded_paper
-    ours = placing.place_along(bpy.context, paper, Vector((0.0, 0.04, 1)), Vector((0, 0, -1)))
+    ours = placing.place_along(bpy.context, paper, placing.MouseRay(Vector((0.0, 0.04, 1)), Vector((0, 0, -1))))
     mine = loose_empty((0.02, -0.02, 0.1))
     mine.select_set(True)
     bpy.context.view_layer.objects.active = paper
@@ -485,7 +492,9 @@ def test_settle_waits_and_says_how_it_stands(paper, capfd):
 def test_folded_anew_a_paper_opens_first_and_then_follows_its_handles(extension, placing, folded_paper, live):
     mesh = folded_paper.data
     mesh.curvefold.fold = 0.0
-    empty = placing.place_along(bpy.context, folded_paper, Vector((0.0, 0.04, 1)), Vector((0, 0, -1)))
+    empty = placing.place_along(
+        bpy.context, folded_paper, placing.MouseRay(Vector((0.0, 0.04, 1)), Vector((0, 0, -1)))
+    )
     empty.location.z = 0.01
     bpy.context.view_layer.update()
     live.settle(mesh)
@@ -545,14 +554,14 @@ def test_a_spoilt_paper_is_one_sentence(extension, paper, name):
 
 
 def test_a_handle_stands_for_its_paper(placing, paper, live):
-    empty = placing.place_along(bpy.context, paper, Vector((0, 0, 1)), Vector((0, 0, -1)))
+    empty = placing.place_along(bpy.context, paper, placing.MouseRay(Vector((0, 0, 1)), Vector((0, 0, -1))))
     assert bpy.context.active_object == empty
     assert live.active_paper(bpy.context) == paper
     assert bpy.ops.curvefold.settle() == {"FINISHED"}
 
 
 def test_where_nothing_is_active_the_only_paper_is_meant(placing, paper, sheet, live):
-    empty = placing.place_along(bpy.context, paper, Vector((0, 0, 1)), Vector((0, 0, -1)))
+    empty = placing.place_along(bpy.context, paper, placing.MouseRay(Vector((0, 0, 1)), Vector((0, 0, -1))))
     bpy.data.objects.remove(empty)  # as Delete does: now nothing is active
     assert bpy.context.active_object is None
     assert live.active_paper(bpy.context) == paper

@@ -266,10 +266,10 @@ def test_a_ray_finds_the_nearest_point_of_a_crease(clicks, folded_paper, live):
     for x in (-0.03, 0.011):
         wanted = _place(paper, x)
         beside = paper.matrix_world @ Vector(found.place_of((wanted[0], wanted[1] + 0.001)))
-        point = clicks.crease_along(paper, beside + normal, -normal)
+        point = clicks.crease_along(paper, clicks.MouseRay(beside + normal, -normal))
         assert point.crease == 0
         assert point.at == pytest.approx(wanted, abs=0.002)
-    assert clicks.crease_along(paper, Vector((99, 99, 99)), -normal) is None
+    assert clicks.crease_along(paper, clicks.MouseRay(Vector((99, 99, 99)), -normal)) is None
 
 
 class Window(SimpleNamespace):
@@ -278,7 +278,8 @@ class Window(SimpleNamespace):
     def __init__(self):
         calls = []
         side = SimpleNamespace(type="UI", x=150, y=0, width=50, height=100)
-        main = SimpleNamespace(type="WINDOW", x=0, y=0, width=100, height=100, data="view")
+        view = SimpleNamespace(perspective_matrix=Matrix())
+        main = SimpleNamespace(type="WINDOW", x=0, y=0, width=100, height=100, data=view)
         area = SimpleNamespace(type="VIEW_3D", regions=[main, side], tag_redraw=lambda: calls.append("redrawn"))
         super().__init__(
             calls=calls,
@@ -289,11 +290,13 @@ class Window(SimpleNamespace):
 
 
 @pytest.fixture(params=["pick_crease.PickCrease", "point_angles.PlaceAngle"])
-def clicking(extension, clicks, paper, monkeypatch, request):
+def clicking(extension, paper, monkeypatch, request):
     """An operator that waits for its click, a function that sends it events, and what it has said and done.
 
-    The view looks from above; its mouse is at millimetres from the sheet's lower left corner.
+    The view looks from above; its mouse is at millimetres from the sheet's lower left corner. The interface has the
+    scale 0, so that nothing is near the mouse.
     """
+    rays = extension("curvefold_addon.mouse_ray")
     module, _, name = request.param.partition(".")
     cls = getattr(extension(f"curvefold_addon.operators.{module}"), name)
     window = Window()
@@ -304,19 +307,22 @@ def clicking(extension, clicks, paper, monkeypatch, request):
         area=SimpleNamespace(type="VIEW_3D"),
         window=window,
         workspace=SimpleNamespace(status_text_set=window.calls.append),
+        preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=0.0)),
         window_manager=SimpleNamespace(modal_handler_add=lambda operator: window.calls.append("waits")),
     )
 
     def origin(region, view, at):
         return Vector((at[0] / 1e3 - 0.05, at[1] / 1e3 - 0.05, 1))
 
-    monkeypatch.setattr(clicks.view3d_utils, "region_2d_to_origin_3d", origin)
-    monkeypatch.setattr(clicks.view3d_utils, "region_2d_to_vector_3d", lambda *_: Vector((0, 0, -1)))
-    operator = SimpleNamespace(report=lambda kind, text: window.calls.append(text), cursor=cls.cursor)
-    for method in ("cancel", "refuse", "clicked"):
+    monkeypatch.setattr(rays.view3d_utils, "region_2d_to_origin_3d", origin)
+    monkeypatch.setattr(rays.view3d_utils, "region_2d_to_vector_3d", lambda *_: Vector((0, 0, -1)))
+    operator = SimpleNamespace(
+        report=lambda kind, text: window.calls.append(text), cursor=cls.cursor, help=cls.help
+    )
+    for method in ("cancel", "refuse", "clicked", "waiting_paper"):
         setattr(operator, method, partial(getattr(cls, method), operator))
     assert cls.invoke(operator, context, None) == {"RUNNING_MODAL"}
-    assert window.calls == [cls.cursor, clicks.HELP, "waits"]
+    assert window.calls == [cls.cursor, cls.help, "waits"]
     window.calls.clear()
 
     def send(kind, x=0, y=0, value="PRESS"):
@@ -376,7 +382,7 @@ def test_they_begin_only_in_a_3d_view(extension):
     cls = extension("curvefold_addon.operators.point_angles").PlaceAngle
     said = []
     for area in (None, SimpleNamespace(type="OUTLINER")):
-        cls.invoke(SimpleNamespace(refuse=said.append), SimpleNamespace(area=area), None)
+        cls.invoke(SimpleNamespace(refuse=said.append, what=cls.what), SimpleNamespace(area=area), None)
     assert said == ["Creases are clicked in a 3D view"] * 2
 
 

@@ -329,7 +329,7 @@ def pick(walk):
     at = paper.matrix_world @ walk.rng.choice(paper.data.vertices).co
     operator = SimpleNamespace()
     try:
-        point = walk.addon.clicks.crease_along(paper, at + normal, -normal)
+        point = walk.addon.clicks.crease_along(paper, walk.addon.clicks.MouseRay(at + normal, -normal))
         if point is not None:
             walk.rng.choice((walk.addon.pick_crease.PickCrease, walk.addon.point_angles.PlaceAngle)).clicked(
                 operator, paper, point
