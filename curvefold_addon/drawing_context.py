@@ -24,6 +24,17 @@ def active_sheet(context: bpy.types.Context) -> bpy.types.Object | None:
     return None
 
 
+def meant_sheets(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """The sheets that papers are made of: all that are selected where the active one is among them, or none is
+    active; of several, those that have no paper yet, if there are any.
+    """
+    active = active_sheet(context)
+    selected = [item for item in context.selected_objects if drawing_objects.is_sheet(item)]
+    if len(selected) < 2 or (active is not None and active not in selected):
+        return [] if active is None else [active]
+    return [sheet for sheet in selected if not live.papers_on(sheet)] or selected
+
+
 def _sheet_behind(item: bpy.types.Object) -> bpy.types.Object | None:
     if item.type == "MESH" and item.data.curvefold.is_paper:
         return item.data.curvefold.sheet

@@ -84,6 +84,7 @@ def _finish(workspace: bpy.types.WorkSpace) -> None:
     del workspace[DRAWN]
     if crease is not None and crease.type == "CURVE" and drawing_objects.is_crease(crease):
         drawing_objects.drop_dots(crease.data)
+        drawing_objects.make_thin(crease.data)
 
 
 def _give_back(window: bpy.types.Window) -> None:

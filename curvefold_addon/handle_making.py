@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import bpy
 from mathutils import Vector
 
-from . import live
+from . import live, looking
 from .bridge import hooks, linked
 from .bridge.mesh import longer_side
 from .bridge.surface_points import SurfacePoint
@@ -45,7 +45,12 @@ def hook_to(handle: bpy.types.PropertyGroup, paper: bpy.types.Object, hook: bpy.
 
 
 def new_empty(paper: bpy.types.Object, place: Sequence[float], name: str) -> bpy.types.Object:
-    """An empty at a place of the paper's local coordinates, which moves with the paper."""
+    """An empty at a place of the paper's local coordinates, which moves with the paper.
+
+    With the first one, lines from children to parents are switched off; who switches them on again, keeps them.
+    """
+    if not any(child.get(OURS) for child in paper.children):
+        looking.hide_relations()
     empty = bpy.data.objects.new(name, None)
     empty[OURS] = True
     empty.empty_display_type = "SPHERE"

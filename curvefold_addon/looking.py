@@ -1,4 +1,8 @@
-"""The 3D view turns to what was added where it would hardly be seen: a letter among things of metres."""
+"""What the extension does to 3D views.
+
+They turn to what was added where it would hardly be seen, a letter among things of metres; and they show no lines
+between a paper and its handles.
+"""
 
 import bpy
 from mathutils import Vector
@@ -9,6 +13,14 @@ FILLS = 0.64
 SMALL = 0.3
 #: Width of the view's camera, mm, with the zoom that Blender gives it.
 SENSOR = 72.0
+
+
+def hide_relations() -> None:
+    """Switches off, in the 3D views of the windows, the dashed lines from children to their parents."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.spaces.active.overlay.show_relationship_lines = False
 
 
 def show(context: bpy.types.Context, *things: bpy.types.Object) -> None:

@@ -19,7 +19,7 @@ from bpy.props import (
     PointerProperty,
 )
 
-from . import control_properties, handle_choice, live
+from . import control_properties, handle_choice, live, shown_drawing
 from .control_properties import SIDES, CreaseSettings, JointSettings, PointAngleSettings, WeightSettings, wake
 from .resolution_property import resolution_property
 
@@ -57,6 +57,13 @@ class DrawingSettings(bpy.types.PropertyGroup):
 
     role: EnumProperty(name="Role", items=ROLES, default="NONE")
     assignment: EnumProperty(name="Assignment", items=ASSIGNMENTS, default="U")
+    show: BoolProperty(
+        name="Show Drawing",
+        description="The border and the creases of the sheet are seen in the viewport; the file keeps them anyway",
+        get=lambda settings: shown_drawing.is_shown(settings.id_data),
+        set=lambda settings, value: shown_drawing.show(settings.id_data, value),
+        options={"SKIP_SAVE"},
+    )
 
 
 class HandleSettings(bpy.types.PropertyGroup):

@@ -31,7 +31,7 @@ def lay_curve(item: Any, sheet: Any) -> None:
         item.parent, item.parent_type = sheet, "OBJECT"
         item.matrix_parent_inverse = Matrix()
         item.matrix_basis = Matrix()
-    drawing_objects.mark_crease(item, item.curvefold.assignment, drawing_objects.LINE * sheet_size(sheet))
+    drawing_objects.mark_crease(item, item.curvefold.assignment)
 
 
 def lay_strokes(pencil: Any, sheet: Any) -> Any | None:
@@ -47,7 +47,7 @@ def lay_strokes(pencil: Any, sheet: Any) -> Any | None:
     if not curve.splines:
         drawing_objects.remove_curve(curve)
         return None
-    return drawing_objects.new_crease(curve, sheet, "U", drawing_objects.LINE * size)
+    return drawing_objects.new_crease(curve, sheet, "U")
 
 
 def _flatten(curve: Any, matrix: Array) -> None:

@@ -125,7 +125,7 @@ def add_drawing(pattern: solver.CreasePattern, collection: Any) -> Any:
     """A sheet with its creases, in true scale for the current scene, centred on the world's origin."""
     scale = metres_per_unit(pattern.unit_mm) / _metres_in_a_unit()
     low, high = pattern.boundary.min(axis=0), pattern.boundary.max(axis=0)
-    middle, size = 0.5 * (low + high), scale * float((high - low).max())
+    middle = 0.5 * (low + high)
 
     def placed(points: Array) -> Array:
         flat = (points - middle) * scale
@@ -141,7 +141,7 @@ def add_drawing(pattern: solver.CreasePattern, collection: Any) -> Any:
             add_poly_spline(curve, placed(crease.points), crease.closed)
         else:
             add_bezier_spline(curve, placed(_whole(crease)), crease.closed)
-        drawing_objects.new_crease(curve, sheet, crease.assignment, drawing_objects.LINE * size)
+        drawing_objects.new_crease(curve, sheet, crease.assignment)
     return sheet
 
 

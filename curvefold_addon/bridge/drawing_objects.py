@@ -11,9 +11,6 @@ from . import linked
 
 SHEET, CREASE = "SHEET", "CREASE"
 
-#: Radius of a crease's line, relative to the sheet's longer side: that of a thick felt pen on a letter.
-LINE = 4e-3
-
 Color = tuple[float, float, float, float]
 
 #: Name of the look and its scene-linear colour, for FOLD's letters.
@@ -51,30 +48,30 @@ def new_sheet(curve: Any, collection: Any) -> Any:
 def mark_sheet(sheet: Any) -> None:
     """Makes a Curve object a sheet."""
     sheet.curvefold.role = SHEET
+    make_thin(sheet.data)
     # A drawing is a tool, not a part of the picture.
     sheet.hide_render = True
 
 
-def new_crease(curve: Any, sheet: Any, assignment: str, line: float) -> Any:
-    """A crease of a sheet, in the sheet's own coordinates; ``line`` is the radius of its line."""
+def new_crease(curve: Any, sheet: Any, assignment: str) -> Any:
+    """A crease of a sheet, in the sheet's own coordinates."""
     crease = bpy.data.objects.new(curve.name, curve)
     for collection in linked.homes_beside(sheet):
         collection.objects.link(crease)
     crease.parent = sheet
-    mark_crease(crease, assignment, line)
+    mark_crease(crease, assignment)
     return crease
 
 
-def mark_crease(crease: Any, assignment: str, line: float) -> None:
-    """Makes a Curve object a crease of its parent."""
+def mark_crease(crease: Any, assignment: str) -> None:
+    """Makes a Curve object a crease of its parent.
+
+    It gets no thickness, which would count in its size; its colour is seen in the overlays.
+    """
     crease.curvefold.role = CREASE
     crease.curvefold.assignment = assignment
     crease.hide_render = True
-    curve = crease.data
-    if curve.bevel_depth == 0.0 and curve.bevel_mode == "ROUND":
-        # Blender shows the colour of a line only when it has a thickness.
-        curve.bevel_depth = line
-        curve.bevel_resolution = 1
+    make_thin(crease.data)
     show_assignment(crease)
 
 
@@ -102,6 +99,17 @@ def drop_dots(curve: Any) -> None:
         points = spline.bezier_points if spline.type == "BEZIER" else spline.points
         if len(points) < 2:
             curve.splines.remove(spline)
+
+
+def make_thin(curve: Any) -> None:
+    """Gives the points of a Curve datablock no radius: Blender counts it in the size of what it frames, although
+    nothing shows it. What has a thickness of its own keeps it.
+    """
+    if curve.bevel_depth != 0.0 or curve.bevel_mode != "ROUND" or curve.extrude != 0.0 or not curve.is_editable:
+        return
+    for spline in curve.splines:
+        points = spline.bezier_points if spline.type == "BEZIER" else spline.points
+        points.foreach_set("radius", [0.0] * len(points))
 
 
 def is_sheet(candidate: Any) -> bool:

@@ -22,6 +22,13 @@ class Lines:
 
 
 @dataclass(frozen=True, eq=False)
+class Outline:
+    """points (2n,3): n segments of one colour."""
+
+    points: Single
+
+
+@dataclass(frozen=True, eq=False)
 class Surface:
     """points (R,3), colors (R,4), triangles (T,3)."""
 

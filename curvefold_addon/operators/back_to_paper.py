@@ -4,12 +4,12 @@ from typing import ClassVar
 
 import bpy
 
-from .. import drawing_context, drawing_tool
+from .. import drawing_context, drawing_tool, live, shown_drawing
 from .on_paper import OnPaper
 
 
 class BackToPaper(OnPaper, bpy.types.Operator):
-    """Select the paper that follows this drawing, and leave Edit Mode"""
+    """Select the paper that follows this drawing, leave Edit Mode, and hide the drawing"""
 
     bl_idname = "curvefold.back_to_paper"
     bl_label = "Back to the Paper"
@@ -31,6 +31,9 @@ class BackToPaper(OnPaper, bpy.types.Operator):
             return self.refuse(f"{paper.name} is hidden: show it to go on with it")
         drawing_tool.leave_edit_mode(context)
         drawing_context.select_only(context, paper)
+        sheet = live.sheet_here(paper.data.curvefold)
+        if sheet is not None:
+            shown_drawing.show(sheet, False)
         return {"FINISHED"}
 
 

@@ -5,8 +5,8 @@ from typing import ClassVar
 import bpy
 from bpy.props import EnumProperty
 
-from .. import drawing_tool, later_work
-from ..bridge import drawing, drawing_objects
+from .. import drawing_tool, later_work, shown_drawing
+from ..bridge import drawing_objects
 from ..drawing_context import NO_SHEET, active_sheet, may_change, select_only
 from ..properties import ASSIGNMENTS
 
@@ -35,10 +35,10 @@ class DrawCrease(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         sheet = active_sheet(context)
         drawing_tool.leave_edit_mode(context)
+        shown_drawing.show(sheet, True)
         # Drawing on a planar curve stays in its plane, from wherever it is seen; and its plane is the sheet's.
         curve = drawing_objects.new_curve("Crease")
-        line = drawing_objects.LINE * drawing.sheet_size(sheet)
-        crease = drawing_objects.new_crease(curve, sheet, self.assignment, line)
+        crease = drawing_objects.new_crease(curve, sheet, self.assignment)
         if not crease.visible_get():
             bpy.data.objects.remove(crease)
             drawing_objects.remove_curve(curve)

@@ -2,17 +2,17 @@
 
 import bpy
 
-from . import content, painting, trouble_marks
+from . import content, drawing_watch, painting
 
 
 def register() -> None:
     # Without a window there is nothing to draw on.
     if not bpy.app.background:
-        trouble_marks.register()
+        drawing_watch.register()
         painting.register()
 
 
 def unregister() -> None:
     painting.unregister()
-    trouble_marks.unregister()
+    drawing_watch.unregister()
     content.forget()

@@ -13,10 +13,13 @@ from mathutils import Matrix, Vector
 
 from ..bridge import drawing_objects
 from ..bridge import overlay as arrays
-from . import content, trouble_marks
+from ..bridge.drawn import Outline
+from . import content, drawing_lines, trouble_marks
 
 #: Pixels at a resolution scale of 1.
-CREASE_WIDTH, RULING_WIDTH, PULL_WIDTH = 3.0, 1.2, 2.0
+CREASE_WIDTH, RULING_WIDTH, PULL_WIDTH = 1.8, 1.2, 2.0
+#: Of a drawing's lines; thin, also where they are selected.
+LINE_WIDTH = 1.8
 BALL_WIDTH, IMAGE_WIDTH, PATCH_RADIUS = 1.0, 1.6, 5.0
 MARK_RADIUS, TROUBLE_RADIUS, TEXT_SIZE, TEXT_PADDING = 4.0, 8.0, 12.0, 4.0
 #: Lines on the paper are drawn this part of the distance nearer to the eye, so that they do not sink into it.
@@ -86,6 +89,25 @@ def _draw_in_space(context: bpy.types.Context) -> None:
         drawn = content.of_paper(paper, settings)
         if drawn is not None:
             _draw_paper(context, drawn)
+    if settings.creases:
+        _draw_drawings(context)
+
+
+def _draw_drawings(context: bpy.types.Context) -> None:
+    """Blender shows a line without thickness in one colour, and lines in one plane with a paper in pieces."""
+    gpu.state.blend_set("ALPHA")
+    gpu.state.depth_mask_set(False)
+    gpu.state.depth_test_set("LESS_EQUAL")
+    try:
+        for drawn in drawing_lines.shown(context):
+            uid = drawn.part.session_uid
+            with gpu.matrix.push_pop():
+                gpu.matrix.load_matrix(_lifted(context.region_data) @ drawn.part.matrix_world)
+                _draw_lines(context, (uid, "drawing"), drawn.lines, LINE_WIDTH, drawn.color)
+    finally:
+        gpu.state.depth_test_set("NONE")
+        gpu.state.depth_mask_set(True)
+        gpu.state.blend_set("NONE")
 
 
 def _draw_paper(context: bpy.types.Context, drawn: content.PaperContent) -> None:
@@ -141,10 +163,11 @@ def _ball_matrix(view: bpy.types.RegionView3D, drawn: content.PaperContent) -> M
 def _draw_lines(
     context: bpy.types.Context,
     key: tuple[int, str],
-    lines: arrays.Lines,
+    lines: arrays.Lines | Outline,
     width: float,
     color: tuple[float, float, float, float] | None = None,
 ) -> None:
+    """In one ``color``, or in those that the lines have."""
     if len(lines.points) == 0:
         return
     shader = gpu.shader.from_builtin("POLYLINE_SMOOTH_COLOR" if color is None else "POLYLINE_UNIFORM_COLOR")
@@ -170,10 +193,14 @@ def _batch(key: tuple[int, str], source: object, make: Callable[[], object]) -> 
     """The batch of ``source``, made when it is another than last time."""
     kept = _batches.get(key)
     if kept is None or kept.source is not source:
-        for gone in [other for other in _batches if not content.is_kept(other[0])]:
+        for gone in [other for other in _batches if not _is_kept(other[0])]:
             del _batches[gone]
         kept = _batches[key] = _Batch(source, make())
     return kept.batch
+
+
+def _is_kept(uid: int) -> bool:
+    return content.is_kept(uid) or drawing_lines.is_kept(uid)
 
 
 # --- on the screen -------------------------------------------------------------------------------------------

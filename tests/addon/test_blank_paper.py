@@ -98,7 +98,7 @@ def test_a_paper_keeps_its_creases_when_the_last_is_deleted_and_follows_a_new_on
     assert "it has no crease any more" in live.report(paper.data).sentence
     with pytest.raises(extension("solver").PatternError, match="no crease any more"):
         live.settle(paper.data)
-    extension("curvefold_addon.bridge.drawing_objects").new_crease(curve, sheet, "U", 1e-4)
+    extension("curvefold_addon.bridge.drawing_objects").new_crease(curve, sheet, "U")
     bpy.context.view_layer.update()
     paper.data.curvefold.fold = 40.0
     live.rebuild(paper.data)

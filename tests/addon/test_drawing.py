@@ -39,7 +39,7 @@ def add_crease(extension, square):
     def add(fill, name="Crease", assignment="U"):
         curve = objects.new_curve(name)
         fill(curve)
-        return objects.new_crease(curve, square, assignment, 0.003)
+        return objects.new_crease(curve, square, assignment)
 
     return add
 
@@ -584,4 +584,3 @@ def test_mountains_and_valleys_look_different(extension, square, add_crease):
     assert [look.name for look in looks] == ["Curvefold Mountain", "Curvefold Valley"]
     assert looks[0].diffuse_color[0] > looks[0].diffuse_color[2]
     assert looks[1].diffuse_color[0] < looks[1].diffuse_color[2]
-    assert first.data.bevel_depth > 0

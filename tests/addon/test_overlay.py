@@ -412,10 +412,10 @@ def test_what_is_kept_of_a_mesh_that_is_gone_is_dropped(content, paper, settings
 
 @pytest.fixture
 def marks(extension):
-    module = extension("curvefold_addon.overlay.trouble_marks")
-    module.register()
-    yield module
-    module.unregister()
+    watch = extension("curvefold_addon.overlay.drawing_watch")
+    watch.register()
+    yield extension("curvefold_addon.overlay.trouble_marks")
+    watch.unregister()
 
 
 def test_troubles_are_looked_for_when_the_drawing_has_changed(marks, monkeypatch):
@@ -453,6 +453,78 @@ def test_what_is_no_drawing_changes_no_troubles(marks, monkeypatch):
     assert marks.of_sheet(sheet) == ()
 
 
+# --- lines of drawings -------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def lines(extension):
+    return extension("curvefold_addon.bridge.drawing_lines")
+
+
+def test_the_lines_of_a_crease_are_those_that_blender_draws(lines):
+    bpy.ops.curvefold.add_sample(sample="one_arc")
+    crease = bpy.context.active_object.children[0]
+    bpy.context.view_layer.update()
+    evaluated = crease.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    drawn = np.array([vertex.co[:] for vertex in evaluated.to_mesh().vertices])
+    evaluated.to_mesh_clear()
+    points = lines.lines_of(crease).points
+    assert np.array_equal(points[1:-1:2], points[2::2]), "the segments are joined"
+    assert np.vstack([points[::2], points[-1:]]) == pytest.approx(drawn, abs=1e-6)
+
+
+def test_a_border_is_a_closed_line(lines):
+    bpy.ops.curvefold.add_sheet(size="SQUARE")
+    points = lines.lines_of(bpy.context.active_object).points
+    assert len(points) == 8
+    assert np.array_equal(points[0], points[-1])
+    assert np.ptp(points, axis=0) == pytest.approx([0.2, 0.2, 0.0])
+
+
+@pytest.mark.parametrize("letter", ["M", "V", "U", "F"])
+def test_each_assignment_has_a_colour_of_its_own(lines, letter):
+    bpy.ops.curvefold.add_sample(sample="one_arc")
+    crease = bpy.context.active_object.children[0]
+    crease.curvefold.assignment = letter
+    assert lines.color_of(crease) == lines.COLORS[letter]
+    assert len(set(lines.COLORS.values()) | {lines.BORDER}) == 5
+
+
+def test_an_empty_crease_has_no_lines(lines):
+    bpy.ops.curvefold.add_sheet()
+    bpy.ops.curvefold.draw_crease()
+    assert lines.lines_of(bpy.context.active_object) is None
+
+
+def test_the_lines_of_what_the_viewport_shows_are_drawn(extension, marks):
+    drawn = extension("curvefold_addon.overlay.drawing_lines")
+    screens = (screen for screen in bpy.data.screens for area in screen.areas if area.type == "VIEW_3D")
+    space = next(area.spaces.active for area in next(screens).areas if area.type == "VIEW_3D")
+    view = SimpleNamespace(view_layer=bpy.context.view_layer, space_data=space, preferences=bpy.context.preferences)
+    bpy.ops.curvefold.add_sample(sample="one_arc")
+    sheet = bpy.context.active_object
+    crease = sheet.children[0]
+    bpy.context.view_layer.update()
+
+    def shown():
+        return {found.part.name: found for found in drawn.shown(view)}
+
+    theme = bpy.context.preferences.themes[0].view_3d
+    first = shown()
+    assert first.keys() == {sheet.name, crease.name}
+    assert first[crease.name].color[:3] not in (theme.object_active[:], theme.object_selected[:])
+    assert first[sheet.name].color == (*theme.object_active, 1.0)
+    assert shown()[crease.name].lines is first[crease.name].lines, "kept until the drawing changes"
+    crease.location.x = 0.01
+    crease.select_set(True)
+    bpy.context.view_layer.update()
+    assert shown()[crease.name].lines is not first[crease.name].lines
+    assert shown()[crease.name].color == (*theme.object_selected, 1.0)
+    sheet.hide_set(True)
+    bpy.context.view_layer.update()
+    assert shown().keys() == {crease.name}
+
+
 # --- drawing ---------------------------------------------------------------------------------------------
 
 
@@ -473,4 +545,4 @@ def test_a_draw_handler_never_raises_and_reports_once(extension, caplog):
 def test_without_a_window_nothing_is_hooked_in(extension):
     assert bpy.app.background
     assert extension("curvefold_addon.overlay.painting")._handles == []
-    assert not extension("curvefold_addon.overlay.trouble_marks")._watching
+    assert not extension("curvefold_addon.overlay.drawing_watch")._watching
