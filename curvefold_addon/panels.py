@@ -17,7 +17,7 @@ from .control_panels import (
     PointAnglesPanel,
     WeightsPanel,
 )
-from .operators.add_sample import SampleMenu
+from .operators import add_sample
 from .overlay import trouble_marks
 from .panel_parts import PaperPanel, Tab, say, switched_row
 
@@ -51,10 +51,11 @@ def _draw_beginning(layout: bpy.types.UILayout, context: bpy.types.Context) -> N
     column = layout.column(align=True)
     column.scale_y = 1.2
     column.operator_menu_enum("curvefold.add_sheet", "size", text="Paper Sheet", icon="MESH_PLANE")
-    column.menu(SampleMenu.bl_idname, text="Sample", icon="IMAGE_DATA")
     column.operator("curvefold.import_drawing", text="Drawing…", icon="FILE_FOLDER")
     if bpy.ops.curvefold.sheet_from_object.poll():
         layout.operator("curvefold.sheet_from_object", icon="OUTLINER_OB_CURVE")
+    layout.label(text="Samples")
+    add_sample.draw_buttons(layout.column(align=True))
 
 
 def _draw_sheet(layout: bpy.types.UILayout, context: bpy.types.Context, sheet: bpy.types.Object) -> None:

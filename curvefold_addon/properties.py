@@ -17,6 +17,7 @@ from bpy.props import (
     FloatVectorProperty,
     IntProperty,
     PointerProperty,
+    StringProperty,
 )
 
 from . import control_properties, handle_choice, live, shown_drawing
@@ -57,6 +58,8 @@ class DrawingSettings(bpy.types.PropertyGroup):
 
     role: EnumProperty(name="Role", items=ROLES, default="NONE")
     assignment: EnumProperty(name="Assignment", items=ASSIGNMENTS, default="U")
+    #: What was decided when the file was read from which it comes, a line each.
+    notes: StringProperty(options={"HIDDEN"})
     show: BoolProperty(
         name="Show Drawing",
         description="The border and the creases of the sheet are seen in the viewport; the file keeps them anyway",
@@ -113,6 +116,8 @@ class PaperSettings(bpy.types.PropertyGroup):
     sheet: PointerProperty(
         name="Drawing", description="The sheet whose drawing is folded", type=bpy.types.Object, update=_resheet
     )
+    #: Of a paper that was folded from a file without a sheet: what was decided when that was read, a line each.
+    notes: StringProperty(options={"HIDDEN"})
     #: Scales of the sheet and of the paper's object when they were last compared; 0 without a sheet.
     sheet_scale: FloatProperty(default=0.0, options={"HIDDEN"})
     paper_scale: FloatProperty(default=0.0, options={"HIDDEN"})

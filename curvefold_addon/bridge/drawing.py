@@ -135,6 +135,7 @@ def add_drawing(pattern: solver.CreasePattern, collection: Any) -> Any:
     for ring in (pattern.boundary, *pattern.holes):
         add_poly_spline(border, placed(ring), closed=True)
     sheet = drawing_objects.new_sheet(border, collection)
+    drawing_objects.keep_notes(sheet.curvefold, pattern.notes)
     for k, crease in enumerate(pattern.creases):
         curve = drawing_objects.new_curve(crease.name or f"Crease {k + 1}")
         if crease.beziers is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import bpy
@@ -89,6 +90,11 @@ def show_assignment(crease: Any) -> None:
     slot = crease.material_slots[0]
     slot.link = "OBJECT"
     slot.material = material
+
+
+def keep_notes(settings: Any, notes: Sequence[str]) -> None:
+    """Keeps what was decided when a drawing was read with what was made of it, a line each."""
+    settings.notes = "\n".join(notes).encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def drop_dots(curve: Any) -> None:

@@ -11,7 +11,7 @@ from mathutils import Matrix  # type: ignore[import-not-found]
 
 from ...solver import Crease, CreasePattern, Handle, Status
 from ...solver.description import AUTO
-from . import by_hand, controls, hooks, state
+from . import by_hand, controls, drawing_objects, hooks, state
 from . import mesh as surface
 from .curve_targets import target_points
 from .kept_controls import keep_controls
@@ -61,6 +61,7 @@ def keep(paper: Any, result: FoldResult) -> None:
         entry.axes = handle.axes
         entry.strength = handle.strength
     settings.is_paper = True
+    drawing_objects.keep_notes(settings, result.pattern.notes)
     pattern = result.pattern
     if description.assignments == "free":
         # It was folded as if the drawing named no sides, and so it goes on.

@@ -26,13 +26,13 @@ def make_sheet(item: Any, collection: Any) -> Any:
     as it is. Raises PatternError, and then nothing has changed.
     """
     if item.type == "CURVE" and _lies_in_its_plane(item):
-        before = item.hide_render
-        drawing_objects.mark_sheet(item)
+        item.curvefold.role = drawing_objects.SHEET
         try:
             read_drawing(item)
         except solver.PatternError:
-            item.curvefold.role, item.hide_render = "NONE", before
+            item.curvefold.role = "NONE"
             raise
+        drawing_objects.mark_sheet(item)
         item.data.fill_mode = "NONE" if item.data.dimensions == "2D" else item.data.fill_mode
         return item
     matrix = world_matrix(item)

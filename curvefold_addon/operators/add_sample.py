@@ -10,9 +10,11 @@ from .. import later_work, samples, wording
 from ..drawing_context import in_object_mode
 from .import_drawing import add_at_cursor
 
-#: Pictures below each other, and their size in lines of text.
+#: Pictures below each other in the menu, and their size in lines of text.
 ROWS = 4
 PICTURE = 5.0
+#: The same of the buttons with small pictures in the tab.
+SMALL_PICTURE = 2.0
 
 
 class AddSample(bpy.types.Operator):
@@ -54,6 +56,16 @@ class SampleMenu(bpy.types.Menu):
             for name in names[start : start + ROWS]:
                 column.template_icon(icon_value=samples.icon(name), scale=PICTURE)
                 column.operator(AddSample.bl_idname, text=samples.label(name)).sample = name
+
+
+def draw_buttons(layout: bpy.types.UILayout) -> None:
+    """A button for each sample, beside its picture."""
+    for name in samples.names():
+        row = layout.row(align=True)
+        row.template_icon(icon_value=samples.icon(name), scale=SMALL_PICTURE)
+        button = row.column()
+        button.scale_y = SMALL_PICTURE
+        button.operator(AddSample.bl_idname, text=samples.label(name)).sample = name
 
 
 def _menu_entry(self: bpy.types.Menu, context: bpy.types.Context) -> None:

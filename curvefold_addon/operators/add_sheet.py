@@ -31,7 +31,10 @@ SIZES = (
     ("LETTER", "Letter", "8.5 × 11 inches"),
     ("SQUARE", "Square", "A square, 200 mm unless told otherwise"),
     ("CIRCLE", "Circle", "A circle, 200 mm across unless told otherwise"),
+    ("OWN", "Own Size", "A rectangle of a width and a height of your own"),
 )
+#: What can be chosen of sizes that have no upright and lying sheet.
+_CHOICES = {"SQUARE": ("side",), "CIRCLE": ("side",), "OWN": ("width", "height")}
 
 
 class AddSheet(bpy.types.Operator, AddObjectHelper):
@@ -55,6 +58,13 @@ class AddSheet(bpy.types.Operator, AddObjectHelper):
         options={"SKIP_SAVE"},
     )
 
+    width: FloatProperty(
+        name="Width", description="Of a sheet of your own size", unit="LENGTH", min=1e-6, precision=4
+    )
+    height: FloatProperty(
+        name="Height", description="Of a sheet of your own size", unit="LENGTH", min=1e-6, precision=4
+    )
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return in_object_mode(cls, context)
@@ -63,22 +73,37 @@ class AddSheet(bpy.types.Operator, AddObjectHelper):
         layout = self.layout
         layout.use_property_split = True
         layout.prop(self, "size")
-        layout.prop(self, "orientation" if self.size in PAPERS else "side")
+        for name in _CHOICES.get(self.size, ("orientation",)):
+            layout.prop(self, name)
         layout.prop(self, "align")
         layout.prop(self, "location")
         layout.prop(self, "rotation")
 
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        self._propose(context)
+        # Only the user knows that size; all others are made at once, and adjusted afterwards.
+        return context.window_manager.invoke_props_dialog(self) if self.size == "OWN" else self.execute(context)
+
+    def _propose(self, context: bpy.types.Context) -> None:
+        """Lengths that nobody has chosen are those of usual sheets, in the scene's units."""
+        unit = context.scene.unit_settings.scale_length
+        width, height = PAPERS["A4"]
+        for name, length in (("side", SIDE), ("width", width), ("height", height)):
+            if not self.properties.is_property_set(name):
+                setattr(self, name, length / unit)
+
     @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
+        self._propose(context)
         unit = context.scene.unit_settings.scale_length
-        if not self.properties.is_property_set("side"):
-            self.side = SIDE / unit
         label = next(name for key, name, _ in SIZES if key == self.size)
         curve = drawing_objects.new_curve(f"{label} Sheet")
         if self.size == "CIRCLE":
             _circle(curve, self.side / 2.0)
         elif self.size == "SQUARE":
             _rectangle(curve, self.side, self.side)
+        elif self.size == "OWN":
+            _rectangle(curve, self.width, self.height)
         else:
             width, height = (length / unit for length in PAPERS[self.size])
             _rectangle(curve, *((width, height) if self.orientation == "PORTRAIT" else (height, width)))

@@ -1,5 +1,7 @@
 """Add > Paper Sheet."""
 
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
 import pytest
@@ -34,6 +36,33 @@ def test_square_and_circle(extension, scale_length):
     pattern = read(extension)
     assert np.hypot(*pattern.boundary.T) == pytest.approx(1.5, rel=1e-3)
     assert len(pattern.boundary) > 100
+
+
+@pytest.mark.parametrize("scale_length", [1.0, 0.001])
+def test_a_size_of_ones_own(extension, scale_length):
+    bpy.context.scene.unit_settings.scale_length = scale_length
+    bpy.ops.curvefold.add_sheet(size="OWN")
+    assert size_mm(read(extension)) == pytest.approx(MILLIMETRES["A4"]), "until somebody says another"
+    bpy.ops.curvefold.add_sheet(size="OWN", width=0.5 / scale_length, height=0.07 / scale_length)
+    assert size_mm(read(extension)) == pytest.approx([500, 70])
+    assert bpy.context.active_object.name.startswith("Own Size Sheet")
+
+
+def test_only_a_size_of_ones_own_is_asked_for(extension):
+    cls = extension("curvefold_addon.operators.add_sheet").AddSheet
+    asked = []
+    manager = SimpleNamespace(invoke_props_dialog=lambda operator: asked.append(operator.size) or {"RUNNING_MODAL"})
+    context = SimpleNamespace(window_manager=manager, scene=bpy.context.scene)
+    for size, answer in (("OWN", {"RUNNING_MODAL"}), ("A4", {"FINISHED"})):
+        operator = SimpleNamespace(
+            size=size,
+            properties=SimpleNamespace(is_property_set=lambda name: False),
+            execute=lambda context: {"FINISHED"},
+        )
+        operator._propose = lambda context, operator=operator: cls._propose(operator, context)
+        assert cls.invoke(operator, context, None) == answer
+        assert (operator.width, operator.height) == pytest.approx((0.21, 0.297))
+    assert asked == ["OWN"]
 
 
 def test_the_sheet_is_at_the_cursor_selected_and_not_rendered():

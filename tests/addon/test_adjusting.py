@@ -136,6 +136,11 @@ def draw_crease(sheet):
     return {"assignment": "M"}
 
 
+def edit_drawing(sheet):
+    bpy.ops.curvefold.edit_drawing("EXEC_DEFAULT", True)
+    return {}
+
+
 def set_assignment(sheet):
     bpy.context.view_layer.objects.active = sheet.children[0]
     sheet.children[0].select_set(True)
@@ -166,6 +171,7 @@ DONE = (
     fold_drawing,
     make_paper,
     draw_crease,
+    edit_drawing,
     set_assignment,
     check_paper,
     add_handle,

@@ -25,6 +25,16 @@ def test_a_drawing_is_added_at_the_cursor_in_true_scale(extension, drawing):
     assert not bpy.data.objects
 
 
+def test_what_was_decided_is_kept_with_what_was_made(extension, drawing):
+    drawing.write_text(drawing.read_text().replace("</svg>", "<text stroke='red'>cut</text></svg>"))
+    notes = extension("solver").read_pattern(drawing).notes
+    assert notes
+    bpy.ops.curvefold.import_drawing(filepath=str(drawing))
+    assert bpy.context.active_object.curvefold.notes.splitlines() == list(notes)
+    bpy.ops.curvefold.fold_drawing(filepath=str(drawing), resolution=10)
+    assert bpy.context.active_object.data.curvefold.notes.splitlines() == list(notes)
+
+
 @pytest.fixture
 def fold_file(tmp_path):
     """A square of 100 mm with one arc of 16 edges across, folded in the file's own frame and flat in a second."""

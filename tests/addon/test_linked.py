@@ -36,7 +36,7 @@ ON_PAPERS = {
     "usual_weights",
 }
 #: Operators that change the active sheet, or selected creases.
-ON_DRAWINGS = {"draw_crease", "make_crease", "set_assignment"}
+ON_DRAWINGS = {"draw_crease", "edit_drawing", "make_crease", "set_assignment"}
 #: Operators that only look, or make something new.
 NEUTRAL = {
     "add_sample",
@@ -165,6 +165,7 @@ def test_operators_on_a_linked_paper_say_so(opened, operator):
 def test_operators_on_a_linked_drawing_say_so(opened, operator):
     chosen = {
         "draw_crease": (sheet_name(),),
+        "edit_drawing": (sheet_name(),),
         "make_crease": (sheet_name(), "Loose"),
         "set_assignment": (crease_name(),),
         "sheet_from_object": ("Loose",),

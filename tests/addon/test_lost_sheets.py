@@ -9,6 +9,8 @@ from mathutils import Matrix
 @pytest.fixture
 def folded_paper(paper, live, monkeypatch):
     monkeypatch.setattr(live, "DRAWING_RESTS", 0.0)
+    # Blender's operators work on what is seen.
+    paper.data.curvefold.sheet.curvefold.show = True
     paper.data.curvefold.fold = 50.0
     live.settle(paper.data)
     bpy.context.view_layer.update()

@@ -85,3 +85,66 @@ def test_a_drawing_that_cannot_be_folded_is_one_sentence_and_leaves_nothing(shee
     assert "Traceback" not in str(caught.value)
     assert not bpy.data.meshes
     assert bpy.context.active_object == sheet
+
+
+def sheets_with_arcs(count):
+    made = []
+    for k in range(count):
+        bpy.ops.curvefold.add_sample(sample="one_arc")
+        made.append(bpy.context.active_object)
+        made[-1].location.x = float(k)
+    for sheet in made:
+        sheet.select_set(True)
+    bpy.context.view_layer.update()
+    return made
+
+
+def papers():
+    return [item for item in bpy.data.objects if item.type == "MESH" and item.data.curvefold.is_paper]
+
+
+def test_of_each_selected_sheet_a_paper_is_made():
+    sheets = sheets_with_arcs(3)
+    assert bpy.ops.curvefold.make_paper(resolution=8) == {"FINISHED"}
+    assert {paper.data.curvefold.sheet for paper in papers()} == set(sheets)
+    assert sorted(paper.location.x for paper in papers()) == [0.0, 1.0, 2.0]
+    assert set(bpy.context.selected_objects) == set(papers())
+    assert not any(sheet.curvefold.show for sheet in sheets)
+
+
+def test_of_sheets_of_which_some_have_a_paper_the_others_get_one():
+    first, second, third = sheets_with_arcs(3)
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.context.view_layer.objects.active = second
+    bpy.ops.curvefold.make_paper(resolution=8)
+    for sheet in (first, second, third):
+        sheet.curvefold.show = True
+        sheet.select_set(True)
+    bpy.context.view_layer.objects.active = first
+    bpy.ops.curvefold.make_paper(resolution=8)
+    assert sorted(paper.data.curvefold.sheet.name for paper in papers()) == sorted(
+        sheet.name for sheet in (first, second, third)
+    )
+
+
+def test_a_sheet_of_which_no_paper_can_be_made_stops_no_other(cross_border):
+    first, second = sheets_with_arcs(2)
+    bpy.ops.curvefold.add_sheet(size="SQUARE")
+    broken = bpy.context.active_object
+    cross_border(broken)
+    for sheet in (first, second):
+        sheet.select_set(True)
+    assert bpy.ops.curvefold.make_paper(resolution=8) == {"FINISHED"}
+    assert {paper.data.curvefold.sheet for paper in papers()} == {first, second}
+    assert broken.curvefold.show
+
+
+def test_what_is_selected_beside_the_active_sheet_is_not_meant():
+    sheets = sheets_with_arcs(2)
+    bpy.ops.curvefold.add_sheet()
+    other = bpy.context.active_object
+    for sheet in sheets:
+        sheet.select_set(True)
+    other.select_set(False)
+    bpy.ops.curvefold.make_paper(resolution=8)
+    assert [paper.data.curvefold.sheet for paper in papers()] == [other]
