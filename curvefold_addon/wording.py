@@ -4,7 +4,7 @@ import re
 import textwrap
 
 from ..solver.measurement import FLAT_ANGLE
-from .bridge.report import CreaseReport, Report
+from .bridge.report import CreaseReport, Report, stretch_words
 
 #: The solver numbers creases; in Blender they have names of their own.
 _NUMBERED = re.compile(r"crease \d+ \((.+)\)")
@@ -36,7 +36,8 @@ NO_RULINGS_ASLEEP = "Asleep: rulings and Gauss image come when it wakes"
 
 def stretch(report: Report) -> str:
     """How much the paper is stretched; paper itself allows about half a percent."""
-    return f"Stretch {report.stretch_mean:.2%} mean, {report.stretch_max:.1%} at most"
+    words = stretch_words(report.stretch_mean, report.stretch_max)
+    return words[:1].upper() + words[1:]
 
 
 def crease_name(report: CreaseReport) -> str:

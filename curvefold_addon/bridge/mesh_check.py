@@ -12,13 +12,15 @@ from ...solver.sheet_mesh import SheetMesh
 from ...solver.verify import Fault, Verification, verify
 from ...solver.verify_mesh import verdict, verify_mesh
 from . import mesh as surface
-from . import mesh_overlay
+from . import mesh_overlay, report
 from .session import Session
 
 #: The object's axes are as long as each other, and square, within this.
 _EVEN = 1e-4
 #: Blender's own attributes of what is selected.
 _SELECTED = (".select_vert", ".select_edge", ".select_poly")
+#: How sentences about meshes without modifiers begin.
+_AS_IT_IS = "This"
 
 Array = NDArray[np.float64]
 
@@ -53,12 +55,14 @@ def check(item: Any, depsgraph: Any, session: Session | None) -> PaperCheck:
     axes = np.array(evaluated.matrix_world, dtype=np.float64)[:3, :3]
     corners, starts, flat = _corners(mesh, layer)
     found = verify_mesh(SheetMesh(positions @ axes.T, starts, corners, flat))
-    folds = ""
+    begin, words, folds = _begin(item, shown), "", ""
     if session is not None and surface.shows(mesh, session.net.render_map.apply(session.positions)):
-        found, folds = _with_net(found, verify(session.net, session.positions))
-    sentence = f"{_begin(item, shown)} is {verdict(found)}{folds if found.ok else ''}"
+        found, folds = _with_net(found, verify(session.net, session.positions)), _folds(session)
+        # Modifiers make another shape of it.
+        words = _figures(session, found) if begin == _AS_IT_IS and found.ok else ""
+    sentence = f"{begin} is {words or verdict(found)}"
     if found.ok:
-        return PaperCheck(True, sentence, None)
+        return PaperCheck(True, sentence + folds, None)
     if not _is_even(axes) and any(fault.check == "isometry" for fault in found.faults):
         sentence += "; the object is scaled unevenly"
     return PaperCheck(False, sentence, _first_vertex(found.faults, corners, flat))
@@ -99,18 +103,30 @@ def _corners(mesh: Any, layer: Any) -> tuple[NDArray[np.int64], NDArray[np.int64
     return corners.astype(np.int64), np.append(starts, count).astype(np.int64), flat.reshape(-1, 2).astype(float)
 
 
-def _with_net(shown: Verification, net: Verification) -> tuple[Verification, str]:
-    """The faults of both, and what is to be said of a paper's folds: a crease that is not folded is paper too."""
+def _with_net(shown: Verification, net: Verification) -> Verification:
+    """The faults of both; a crease that is not folded is paper too."""
     faults = tuple(fault for fault in net.faults if fault.check != "sides")
-    part = net.figures.get("not_folded", 0.0)
-    some = "none of its creases is folded" if part == 1.0 else f"{part:.1%} of its crease points are not folded"
-    folds = f"; {some}" if part > 0.0 else ""
-    return Verification(shown.figures, (*shown.faults, *faults)), folds
+    return Verification(shown.figures, (*shown.faults, *faults))
+
+
+def _figures(session: Session, found: Verification) -> str:
+    """What is said of a paper without faults, with the stretch that the tab shows."""
+    stretch = session.measurement.stretch
+    words = report.stretch_words(float(stretch.mean()), float(stretch.max()))
+    return f"paper: {words}, angles around a vertex change by {found.figures['angle_defect_mean']:.2f}°"
+
+
+def _folds(session: Session) -> str:
+    """What is to be added about a paper's folds, in the words of the tab."""
+    if report.is_flat(session):
+        return "; none of its creases is folded" if session.net.crease_labels else ""
+    unfolded = report.not_folded(report.describe_creases(session))
+    return f"; {unfolded}" if unfolded else ""
 
 
 def _begin(item: Any, shown: bool) -> str:
     if not any(modifier.show_viewport for modifier in item.modifiers):
-        return "This"
+        return _AS_IT_IS
     return "With its modifiers this" if shown else "Without its modifiers this"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -62,7 +63,7 @@ def describe_fault(fault: str) -> Report:
 def describe(found: Session, settings: Any, fault: str, folding: bool, units: Any) -> Report:
     """fault: why the paper cannot be folded as it is now, or empty; units: the scene's unit settings."""
     m = found.measurement
-    creases = tuple(_crease(found, label, k) for k, label in enumerate(found.net.crease_labels))
+    creases = describe_creases(found)
     median = fold_angle_quantiles(m)[1]
     state, sentence = _standing(found, settings, fault, folding, units, creases, median)
     return Report(
@@ -78,6 +79,28 @@ def describe(found: Session, settings: Any, fault: str, folding: bool, units: An
         found.milliseconds,
         tuple(_sentence(lack) for lack in _lacks(found)),
     )
+
+
+def describe_creases(found: Session) -> tuple[CreaseReport, ...]:
+    """What became of each crease, as last measured."""
+    return tuple(_crease(found, label, k) for k, label in enumerate(found.net.crease_labels))
+
+
+def stretch_words(mean: float, most: float) -> str:
+    """How much a paper is stretched."""
+    return f"stretch {mean:.2%} mean, {most:.1%} at most"
+
+
+def is_flat(found: Session) -> bool:
+    """Whether all of a paper lies in one plane."""
+    return bool(off_plane(found.positions) <= _FLAT * found.net.frame.unit)
+
+
+def not_folded(creases: Iterable[CreaseReport]) -> str:
+    """Which creases have points that are not folded; empty when none has."""
+    names = [plain_name(crease.label) for crease in creases if not crease.folded]
+    more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+    return f"{names[0]}{more} not folded everywhere" if names else ""
 
 
 def describe_crease(found: Session, index: int) -> CreaseReport | None:
@@ -100,8 +123,8 @@ def _standing(
         return "trouble", fault
     if inputs is not None and inputs.faults:
         return "trouble", inputs.faults[0]
-    if found.refused:
-        return "trouble", found.refused[0]
+    if found.said.refused:
+        return "trouble", found.said.refused[0]
     if found.failed:
         return "trouble", "the fold failed; the last good shape is kept"
     asked = None if inputs is None else inputs.angle
@@ -110,34 +133,33 @@ def _standing(
     late = _late_handle(found, settings, units)
     if late:
         return "trouble", late
-    if off_plane(found.positions) <= _FLAT * found.net.frame.unit:
+    if is_flat(found):
         return "settled", "flat"
     troubles = _troubles(found)
     if troubles:
         return "trouble", troubles[0]
-    unfolded = [plain_name(crease.label) for crease in creases if not crease.folded]
+    unfolded = not_folded(creases)
     if unfolded:
-        more = f" and {len(unfolded) - 1} more" if len(unfolded) > 1 else ""
-        return "trouble", f"{unfolded[0]}{more} not folded everywhere"
+        return "trouble", unfolded
     mean = float(found.measurement.stretch.mean())
     if mean > MAX_MEAN_STRETCH:
         return "trouble", f"the paper is stretched by {mean:.1%} in the mean, more than paper can be"
-    depth = [finding.sentence for finding in found.findings if finding.lack is Lack.DEPTH]
+    depth = [finding.sentence for finding in found.said.findings if finding.lack is Lack.DEPTH]
     if depth:
         return "settled", depth[0]
     # What was found is not kept in a file: a paper that has not moved since it was opened shows how deep it is.
-    unmoved = found.report is None and asked is not None and median < ANGLE_REACHED * asked
-    return "settled", f"settled at {median:.0f}° of {asked:.0f}°" if unmoved and creases else "settled"
+    shallow = found.judgement is None and asked is not None and median < ANGLE_REACHED * asked
+    return "settled", f"settled at {median:.0f}° of {asked:.0f}°" if shallow and creases else "settled"
 
 
 def _troubles(found: Session) -> list[str]:
     """What was asked and cannot be had. How far the paper follows the slider is an answer, and no trouble."""
-    return [finding.sentence for finding in found.findings if finding.lack is not Lack.DEPTH]
+    return [finding.sentence for finding in found.said.findings if finding.lack is not Lack.DEPTH]
 
 
 def _lacks(found: Session) -> tuple[str, ...]:
     faults = () if found.inputs is None else found.inputs.faults
-    return (*faults, *found.refused, *_troubles(found))
+    return (*faults, *found.said.refused, *_troubles(found))
 
 
 def _late_handle(found: Session, settings: Any, units: Any) -> str:
@@ -163,7 +185,7 @@ def _crease(found: Session, label: str, index: int) -> CreaseReport:
     known = m.fold_angle[mine & np.isfinite(m.fold_angle)]
     angle = float(np.median(known)) if len(known) else None
     folded = bool(m.folded[mine & m.asked].all())
-    return CreaseReport(label, m.side(index), angle, folded, found.flows.get(index))
+    return CreaseReport(label, m.side(index), angle, folded, found.said.flows.get(index))
 
 
 def _sentence(text: str) -> str:

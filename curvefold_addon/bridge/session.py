@@ -6,7 +6,8 @@ be thrown away at any time: ``state`` keeps what it is made from.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from itertools import count
 from typing import Any
 from uuid import uuid4
@@ -41,12 +42,24 @@ def stop() -> None:
 
 
 @dataclass(frozen=True, eq=False)
+class Judgement:
+    """findings: what was asked and not reached; refused: why controls do not act that do not fit the paper,
+    sentences; flows: the part of its way, 0 to 1, that each crease (from 0) with a curve has gone.
+    """
+
+    findings: tuple[Finding, ...] = ()
+    refused: tuple[str, ...] = ()
+    flows: Mapping[int, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
 class Rest:
-    """A shape that rests, and what it was told (``Inputs.numbers``)."""
+    """A shape that rests, what it was told (``Inputs.numbers``), and what was said of it, None where nobody did."""
 
     numbers: Array
     positions: Array
     measurement: Measurement
+    judgement: Judgement | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,9 +77,7 @@ class Session:
     rest         what the paper was told when it came to rest, None while it moves
     before       the rest from which the present motion started
     drawn        the creases as they are drawn
-    refused      why controls do not act that do not fit the paper, sentences
-    findings     what was asked and not reached
-    flows        the part of its way, 0 to 1, that each crease (from 0) with a curve has gone; empty when not known
+    judgement    what the thread has said of the shape; None when it has said nothing yet
     run          the name of the motion, in the .blend too; empty when it has none yet
     frame        the last frame of an animation that the paper has followed
     failed       whether the numbers ran away; the last good shape is kept
@@ -86,9 +97,7 @@ class Session:
         self.inputs: Inputs | None = None
         self.report: SqpReport | None = None
         self.measurement = measure(net, positions)
-        self.findings: tuple[Finding, ...] = ()
-        self.refused: tuple[str, ...] = ()
-        self.flows: dict[int, float] = {}
+        self.judgement: Judgement | None = None
         self.iterations = 0
         self.milliseconds = 0.0
         self.frame: int | None = None
@@ -98,6 +107,11 @@ class Session:
         self._written = positions
         self._anew: Rest | None = None
         self._off_sheet: dict[tuple[float, float], str] = {}
+
+    @property
+    def said(self) -> Judgement:
+        """What the thread has said of the shape, which may be nothing."""
+        return self.judgement or Judgement()
 
     # --- asking ------------------------------------------------------------------------------------------
 
@@ -182,6 +196,7 @@ class Session:
         self._begin_at(positions)
         self.rest = None if rest is None else rest.numbers
         self.measurement = measure(self.net, positions) if rest is None else rest.measurement
+        self.judgement = None if rest is None else rest.judgement
 
     def lay_flat(self) -> None:
         """Puts the flat sheet in place of the shape."""
@@ -210,7 +225,7 @@ class Session:
             self._worker = Worker(self.net, self.positions)
             self.lay_flat()
             self.advance(inputs, iterations)
-            self._anew = Rest(inputs.numbers(), self.positions, self.measurement)
+            self._anew = Rest(inputs.numbers(), self.positions, self.measurement, self.judgement)
         self.inputs = inputs
         self.move_to(self._anew.positions, self._anew)
 
@@ -233,6 +248,9 @@ class Session:
         if not (told and self.run == shape.run and np.array_equal(self.positions, shape.positions)):
             self.move_to(shape.positions, None)
             self.rest, self.origin, self.run, self.before = shape.rest, "", shape.run, None
+            known = _ends.get(self.run)
+            if self.rest is not None and known is not None and np.array_equal(known.rest.positions, self.positions):
+                self.judgement = known.rest.judgement
             self.version = next(_versions)
         self._written = self.positions
 
@@ -240,7 +258,7 @@ class Session:
         if self.rest is None:
             return
         if self.before is None:
-            self.before = Rest(self.rest, self.positions, self.measurement)
+            self.before = Rest(self.rest, self.positions, self.measurement, self.judgement)
         self.rest, self.origin, self.run, self.iterations = None, self.run, "", 0
         if self.failed:
             self._begin_at(self.positions)
@@ -248,16 +266,15 @@ class Session:
     def _begin_at(self, positions: Array) -> None:
         self._worker = self._worker.again(positions)
         self._taken, self._counted = None, 0
-        self.report, self.failed, self.findings, self.refused = None, False, (), ()
-        self.flows = {}
+        self.report, self.failed, self.judgement = None, False, None
         self.positions = positions
 
     def _take(self, step: Step | None) -> None:
         if step is None or step is self._taken:
             return
         self._taken = step
-        self.positions, self.report, self.findings = step.positions, step.report, step.findings
-        self.refused, self.flows = step.refused, step.flows
+        self.positions, self.report = step.positions, step.report
+        self.judgement = Judgement(step.findings, step.refused, step.flows)
         self.iterations += step.iterations - self._counted
         self._counted = step.iterations
         self.milliseconds = 1000.0 * step.seconds
@@ -279,7 +296,7 @@ class Session:
             state.store_run(mesh, self.run)
         if self.rest is not None:
             state.store_rest(mesh, self.rest)
-            rest = Rest(self.rest, self.positions, self.measurement)
+            rest = Rest(self.rest, self.positions, self.measurement, self.judgement)
             _ends[self.run] = _End(self.source, self.origin, rest)
             while len(_ends) > _KEPT_ENDS:
                 del _ends[next(iter(_ends))]

@@ -81,7 +81,7 @@ def test_a_folded_paper_is_paper(paper, said):
     before = selected(paper.data)
     found = run(said)
     assert found.ok
-    assert found.sentence.startswith("This is paper: lengths change by 0.0")
+    assert found.sentence.startswith("This is paper: stretch 0.0")
     assert "folded" not in found.sentence
     assert selected(paper.data) == before
 
