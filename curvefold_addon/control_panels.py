@@ -6,10 +6,14 @@ import bpy
 
 from . import live, wording
 from .control_properties import WEIGHTS
-from .panel_parts import PaperPanel, say, settings_column, switched_row
+from .panel_parts import KeptBox, PaperPanel, paper_settings, settings_column, switched_row
 
 #: More sentences about what cannot be had than this are not shown.
 MOST_LACKS = 4
+#: Lines that are kept free below the creases, for the active one and what cannot be had.
+LINES = 4
+#: The part of a line in the list of creases that belongs to the name.
+NAME_PART = 0.66
 
 
 class CreaseList(bpy.types.UIList):
@@ -30,11 +34,13 @@ class CreaseList(bpy.types.UIList):
         flt_flag: int = 0,
     ) -> None:
         found = live.crease_report(data.id_data, index)
-        row = layout.split(factor=0.42)
         side = "U" if found is None else found.found
+        row = layout.split(factor=NAME_PART)
         row.label(text=item.name, icon=wording.SIDE_ICONS[side])
         row = row.row(align=True)
-        row.label(text="" if found is None else wording.crease(found))
+        row.alignment = "RIGHT"
+        if found is not None:
+            row.label(text=wording.angle(found), icon="NONE" if found.folded or side == "U" else "ERROR")
         if item.side in ("V", "M"):
             row.label(text="", icon="LOCKED")
 
@@ -46,11 +52,7 @@ class CreasesPanel(PaperPanel, bpy.types.Panel):
     bl_label = "Creases"
 
     def draw(self, context: bpy.types.Context) -> None:
-        mesh = live.active_paper(context).data
-        settings = mesh.curvefold
-        report = live.report(mesh)
-        for lack in () if report is None else report.lacks[:MOST_LACKS]:
-            say(self.layout, context, lack, "ERROR", alert=True)
+        settings = paper_settings(self.layout, context)
         row = self.layout.row()
         row.template_list(CreaseList.bl_idname, "", settings, "creases", settings, "active_crease", rows=4)
         column = row.column(align=True)
@@ -62,6 +64,14 @@ class CreasesPanel(PaperPanel, bpy.types.Panel):
         if settings.active_crease < len(settings.creases):
             _draw_crease(self.layout, settings.creases[settings.active_crease])
         self.layout.prop(settings, "use_assignments", text="Sides of the Drawing Hold")
+        box = KeptBox(self.layout, context, LINES)
+        found = live.crease_report(settings.id_data, settings.active_crease)
+        if found is not None and settings.active_crease < len(settings.creases):
+            box.say(f"{settings.creases[settings.active_crease].name}: {wording.crease(found)}", "INFO")
+        report = live.report(settings.id_data)
+        for lack in () if report is None else report.lacks[:MOST_LACKS]:
+            box.say(lack, "ERROR", alert=True)
+        box.fill()
 
 
 def _draw_crease(layout: bpy.types.UILayout, crease: bpy.types.PropertyGroup) -> None:
@@ -86,7 +96,7 @@ class FlowPanel(PaperPanel, bpy.types.Panel):
     bl_parent_id = "CURVEFOLD_PT_creases"
 
     def draw(self, context: bpy.types.Context) -> None:
-        settings = live.active_paper(context).data.curvefold
+        settings = paper_settings(self.layout, context)
         if settings.active_crease >= len(settings.creases):
             return
         crease = settings.creases[settings.active_crease]
@@ -137,7 +147,7 @@ class PointAnglesPanel(PaperPanel, bpy.types.Panel):
     bl_parent_id = "CURVEFOLD_PT_creases"
 
     def draw(self, context: bpy.types.Context) -> None:
-        settings = live.active_paper(context).data.curvefold
+        settings = paper_settings(self.layout, context)
         row = self.layout.row(align=True)
         row.operator("curvefold.place_angle", icon="CURSOR")
         row.operator("curvefold.add_angles", text="At Vertices", icon="VERTEXSEL")
@@ -184,7 +194,7 @@ class JointsPanel(PaperPanel, bpy.types.Panel):
     bl_label = "Joints"
 
     def draw(self, context: bpy.types.Context) -> None:
-        settings = live.active_paper(context).data.curvefold
+        settings = paper_settings(self.layout, context)
         column = self.layout.column(align=True)
         column.operator("curvefold.join_points", icon=wording.JOINT_ICONS["POINTS"])
         row = column.row(align=True)
@@ -228,7 +238,7 @@ class WeightsPanel(PaperPanel, bpy.types.Panel):
     bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        settings = live.active_paper(context).data.curvefold
+        settings = paper_settings(self.layout, context)
         column = settings_column(self.layout)
         for name, _, _ in WEIGHTS:
             column.prop(settings.weights, name)

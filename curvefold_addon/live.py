@@ -137,17 +137,28 @@ def check_follows(mesh: bpy.types.Mesh) -> None:
         raise state.StateError(reason)
 
 
-def check_writable(mesh: bpy.types.Mesh) -> None:
-    """Nothing that is written to a mesh in Edit Mode, of whatever object that shows it, lasts, and shape keys hide
-    it; what was changed by hand would be lost. Raises StateError.
+def why_it_does_not_fold(mesh: bpy.types.Mesh) -> str:
+    """Why nothing that a paper is told now can be seen, a sentence; else empty.
+
+    Nothing that is written to a mesh in Edit Mode, of whatever object that shows it, lasts, and shape keys hide it;
+    what was changed by hand would be lost.
     """
-    check_follows(mesh)
+    if reason := why_it_stays(mesh):
+        return reason
     if mesh.is_editmode:
-        raise state.StateError(f"{mesh.name} is in Edit Mode; leave it to fold the paper")
+        return f"{mesh.name} is in Edit Mode; leave it to fold the paper"
     if baking.is_baked(mesh):
-        raise state.StateError(f"{mesh.name} is baked; free the bake to fold the paper")
+        return f"{mesh.name} is baked; free the bake to fold the paper"
     if mesh.shape_keys is not None:
-        raise state.StateError(f"{mesh.name} has shape keys, which hide how it folds; remove them")
+        return f"{mesh.name} has shape keys, which hide how it folds; remove them"
+    return ""
+
+
+def check_writable(mesh: bpy.types.Mesh) -> None:
+    """Before a paper is folded at once. Raises StateError."""
+    reason = why_it_does_not_fold(mesh)
+    if reason:
+        raise state.StateError(reason)
 
 
 def report(mesh: bpy.types.Mesh) -> Report | None:

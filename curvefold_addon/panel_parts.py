@@ -6,6 +6,9 @@ import bpy
 
 from . import live, wording
 
+#: Height of a line of text among others, in lines of buttons.
+LINE = 0.9
+
 
 def say(
     layout: bpy.types.UILayout,
@@ -13,17 +16,44 @@ def say(
     sentence: str,
     icon: str = "NONE",
     alert: bool = False,
-) -> None:
-    """A sentence in as many lines as the sidebar needs; red when it is an ``alert``."""
+) -> int:
+    """A sentence in as many lines as the sidebar needs, and how many these are; red when it is an ``alert``."""
     column = layout.column(align=True)
-    column.scale_y = 0.9
+    column.scale_y = LINE
     column.alert = alert
     width = context.region.width / context.preferences.system.ui_scale
-    for k, line in enumerate(wording.lines(sentence, width)):
+    lines = wording.lines(sentence, width)
+    for k, line in enumerate(lines):
         if icon == "NONE":
             column.label(text=line)
         else:
             column.label(text=line, icon=icon if k == 0 else "BLANK1")
+    return len(lines)
+
+
+class KeptBox:
+    """A box of sentences that is as high with few lines as with many, so that nothing below it moves.
+
+    It grows only when there is more to say than it has lines for.
+    """
+
+    def __init__(self, layout: bpy.types.UILayout, context: bpy.types.Context, lines: int) -> None:
+        self._column = layout.box().column(align=True)
+        self._context, self._free = context, lines
+
+    def say(self, sentence: str, icon: str = "NONE", alert: bool = False) -> None:
+        self._free -= say(self._column, self._context, sentence, icon, alert)
+
+    def button(self, operator: str, icon: str) -> None:
+        self._column.operator(operator, icon=icon)
+        self._free -= 1
+
+    def fill(self) -> None:
+        """The lines that are left over."""
+        column = self._column.column(align=True)
+        column.scale_y = LINE
+        for _ in range(self._free):
+            column.label(text="")
 
 
 class Tab:
@@ -43,6 +73,16 @@ class PaperPanel(Tab):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return live.active_paper(context) is not None
+
+
+def paper_settings(layout: bpy.types.UILayout, context: bpy.types.Context) -> bpy.types.PropertyGroup:
+    """Those of the paper that is meant; the layout looks disabled where nobody would see what they do.
+
+    In Edit Mode points are chosen for handles and joints, so there it does not.
+    """
+    mesh = live.active_paper(context).data
+    layout.enabled = mesh.is_editmode or not live.why_it_does_not_fold(mesh)
+    return mesh.curvefold
 
 
 def switched_row(layout: bpy.types.UILayout, entry: bpy.types.PropertyGroup) -> bpy.types.UILayout:

@@ -19,7 +19,10 @@ from .control_panels import (
 )
 from .operators import add_sample
 from .overlay import trouble_marks
-from .panel_parts import PaperPanel, Tab, say, switched_row
+from .panel_parts import KeptBox, PaperPanel, Tab, paper_settings, say, switched_row
+
+#: Lines that are kept free for what is said of a paper, and of a drawing.
+PAPER_LINES, DRAWING_LINES = 5, 3
 
 
 class MainPanel(Tab, bpy.types.Panel):
@@ -30,11 +33,8 @@ class MainPanel(Tab, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         paper, sheet = live.active_paper(context), drawing_context.active_sheet(context)
-        active = context.active_object
-        if active is not None and drawing_objects.has_lost_sheet(active):
-            say(self.layout, context, f"{active.name} {wording.LOST_CREASE}", "ERROR", alert=True)
         if paper is not None and not _is_drawing(context):
-            _draw_standing(self.layout, context, paper)
+            _draw_paper(self.layout, context, paper)
         elif sheet is not None:
             _draw_sheet(self.layout, context, sheet)
         else:
@@ -47,100 +47,140 @@ def _is_drawing(context: bpy.types.Context) -> bool:
 
 
 def _draw_beginning(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    say(layout, context, wording.NO_SHEET, "INFO")
     column = layout.column(align=True)
     column.scale_y = 1.2
     column.operator_menu_enum("curvefold.add_sheet", "size", text="Paper Sheet", icon="MESH_PLANE")
     column.operator("curvefold.import_drawing", text="Drawing…", icon="FILE_FOLDER")
-    if bpy.ops.curvefold.sheet_from_object.poll():
-        layout.operator("curvefold.sheet_from_object", icon="OUTLINER_OB_CURVE")
+    layout.operator("curvefold.sheet_from_object", icon="OUTLINER_OB_CURVE")
+    box = KeptBox(layout, context, DRAWING_LINES)
+    _say_lost(box, context)
+    box.say(wording.NO_SHEET, "INFO")
+    box.fill()
     layout.label(text="Samples")
     add_sample.draw_buttons(layout.column(align=True))
 
 
+def _say_lost(box: KeptBox, context: bpy.types.Context) -> None:
+    active = context.active_object
+    if active is not None and drawing_objects.has_lost_sheet(active):
+        box.say(f"{active.name} {wording.LOST_CREASE}", "ERROR", alert=True)
+
+
 def _draw_sheet(layout: bpy.types.UILayout, context: bpy.types.Context, sheet: bpy.types.Object) -> None:
     creases = sum(drawing_objects.is_crease(child) for child in sheet.children)
-    layout.label(text=f"{sheet.name}: {wording.count(creases, 'crease')}", icon="OUTLINER_OB_CURVE")
-    _draw_drawing_tools(layout, context, sheet)
-    if context.mode == "EDIT_CURVE" and drawing_objects.is_crease(context.active_object):
-        say(layout, context, wording.DRAWING, "INFO")
-    elif not creases:
-        say(layout, context, wording.NO_CREASE, "INFO")
+    sheets = drawing_context.meant_sheets(context)
+    title = f"{sheet.name}: {wording.count(creases, 'crease')}"
+    layout.label(text=title if len(sheets) < 2 else f"{len(sheets)} sheets", icon="OUTLINER_OB_CURVE")
+    _draw_drawing_tools(layout, sheet)
     followers = live.papers_on(sheet)
+    column = layout.column()
+    column.scale_y = 1.5
     if followers:
-        _draw_followers(layout, context, followers)
-        return
-    column = layout.column()
-    column.scale_y = 1.5
-    column.operator("curvefold.make_paper", icon="MOD_CLOTH")
-
-
-def _draw_followers(layout: bpy.types.UILayout, context: bpy.types.Context, papers: list[bpy.types.Object]) -> None:
-    """How the papers of a drawing stand that are there already."""
-    paper = drawing_context.meant_paper(context)
-    if len(papers) > 1:
-        layout.label(text=f"{paper.name}, one of {len(papers)} papers of this drawing")
-    _draw_standing(layout, context, paper)
-    column = layout.column()
-    column.scale_y = 1.5
-    column.operator("curvefold.back_to_paper", icon="LOOP_BACK")
-    layout.operator("curvefold.make_paper", text="Another Paper", icon="ADD")
-
-
-def _draw_drawing_tools(layout: bpy.types.UILayout, context: bpy.types.Context, sheet: bpy.types.Object) -> None:
+        column.operator("curvefold.back_to_paper", icon="LOOP_BACK")
+        layout.operator("curvefold.make_paper", text="Another Paper", icon="ADD")
+        _draw_controls(layout, drawing_context.meant_paper(context))
+    else:
+        column.operator("curvefold.make_paper", icon="MOD_CLOTH")
+    box = KeptBox(layout, context, DRAWING_LINES + (PAPER_LINES if followers else 0))
+    _say_lost(box, context)
     for trouble in trouble_marks.of_sheet(sheet):
-        say(layout, context, trouble.sentence, "ERROR", alert=True)
+        box.say(trouble.sentence, "ERROR", alert=True)
+    if context.mode == "EDIT_CURVE" and drawing_objects.is_crease(context.active_object):
+        box.say(wording.DRAWING, "INFO")
+    elif not creases:
+        box.say(wording.NO_CREASE, "INFO")
+    elif not followers:
+        box.say(wording.SEVERAL if len(sheets) > 1 else wording.READY, "INFO")
+    if followers:
+        paper = drawing_context.meant_paper(context)
+        if len(followers) > 1:
+            box.say(f"{paper.name}, one of {len(followers)} papers of this drawing")
+        _say_standing(box, paper)
+    box.fill()
+
+
+def _draw_drawing_tools(layout: bpy.types.UILayout, sheet: bpy.types.Object) -> None:
     column = layout.column(align=True)
     column.operator("curvefold.draw_crease", icon="GREASEPENCIL")
-    if bpy.ops.curvefold.make_crease.poll():
-        column.operator("curvefold.make_crease", icon="CURVE_DATA")
-    if bpy.ops.curvefold.set_assignment.poll():
-        column = layout.column(align=True)
-        column.label(text="Selected creases fold to")
+    column.operator("curvefold.make_crease", icon="CURVE_DATA")
+    row = column.row(align=True)
+    row.operator("curvefold.edit_drawing", text="Edit", icon="EDITMODE_HLT")
+    row.prop(sheet.curvefold, "show", toggle=True, icon="HIDE_OFF" if sheet.curvefold.show else "HIDE_ON")
+    active = bpy.context.active_object
+    letter = active.curvefold.assignment if active is not None and drawing_objects.is_crease(active) else ""
+    column = layout.column(align=True)
+    column.label(text="Selected creases fold to")
+    # Two in a line, so that no name is cut.
+    for pair in ASSIGNMENT_BUTTONS:
         row = column.row(align=True)
-        for letter, text in (("V", "Valley"), ("M", "Mountain"), ("U", "Free"), ("F", "Flat")):
-            active = context.active_object is not None and context.active_object.curvefold.assignment == letter
-            row.operator("curvefold.set_assignment", text=text, depress=active).assignment = letter
+        for key, text in pair:
+            row.operator("curvefold.set_assignment", text=text, depress=key == letter).assignment = key
 
 
-def _draw_standing(layout: bpy.types.UILayout, context: bpy.types.Context, paper: bpy.types.Object) -> None:
+#: The buttons of creases' assignments, line by line.
+ASSIGNMENT_BUTTONS = ((("V", "Valley"), ("M", "Mountain")), (("U", "Free"), ("F", "Flat")))
+
+
+def _draw_paper(layout: bpy.types.UILayout, context: bpy.types.Context, paper: bpy.types.Object) -> None:
+    _draw_controls(layout, paper)
+    row = layout.row(align=True)
+    sheet = live.sheet_here(paper.data.curvefold)
+    if sheet is not None:
+        row.prop(sheet.curvefold, "show", toggle=True, icon="HIDE_OFF" if sheet.curvefold.show else "HIDE_ON")
+        row.operator("curvefold.edit_drawing", text="Edit", icon="EDITMODE_HLT")
+    else:
+        row.label(text="No drawing", icon="HIDE_ON")
+    box = KeptBox(layout, context, PAPER_LINES)
+    _say_lost(box, context)
+    _say_standing(box, paper)
+    box.fill()
+
+
+def _draw_controls(layout: bpy.types.UILayout, paper: bpy.types.Object) -> None:
+    settings = paper.data.curvefold
+    column = layout.column()
+    column.enabled = not live.why_it_does_not_fold(paper.data)
+    row = column.row()
+    row.scale_y = 1.3
+    row.active = settings.live
+    row.prop(settings, "fold", slider=True)
+    part = column.column(align=True)
+    part.prop(settings, "live", toggle=True, icon="PLAY")
+    row = part.row(align=True)
+    row.operator("curvefold.flatten", text="Flatten", icon="MESH_PLANE")
+    row.operator("curvefold.fold_anew", text="Fold Anew", icon="FILE_REFRESH")
+
+
+def _say_standing(box: KeptBox, paper: bpy.types.Object) -> None:
+    """How a paper stands, what hinders it, and what can be done next."""
     mesh = paper.data
     settings = mesh.curvefold
     report = live.report(mesh)
-    box = layout.box()
     if report is None:
-        say(box, context, f"{paper.name}. {wording.ASLEEP}", "PAUSE")
+        box.say(f"{paper.name}. {wording.ASLEEP}", "PAUSE")
     else:
-        trouble = report.state == "trouble"
-        say(box, context, report.sentence, wording.STATE_ICONS[report.state], alert=trouble)
+        box.say(report.sentence, wording.STATE_ICONS[report.state], alert=report.state == "trouble")
         if report.vertices:
-            say(box, context, wording.stretch(report), "BLANK1")
+            box.say(wording.stretch(report), "BLANK1")
     if by_hand.is_changed(mesh):
-        column = box.column(align=True)
-        column.operator("curvefold.restore_paper", icon="LOOP_BACK")
-        column.operator("curvefold.make_ordinary_mesh", icon="OUTLINER_OB_MESH")
+        box.button("curvefold.restore_paper", "LOOP_BACK")
+        box.button("curvefold.make_ordinary_mesh", "OUTLINER_OB_MESH")
     elif baking.is_baked(mesh):
-        say(box, context, wording.BAKED, "SHAPEKEY_DATA")
+        box.say(wording.BAKED, "SHAPEKEY_DATA")
     elif mesh.shape_keys is not None:
-        say(box, context, wording.KEYED, "ERROR", alert=True)
+        box.say(wording.KEYED, "ERROR", alert=True)
+    elif mesh.is_editmode:
+        box.say(wording.EDITED, "INFO")
     elif not settings.live:
-        say(box, context, wording.NOT_LIVE, "PAUSE")
+        box.say(wording.NOT_LIVE, "PAUSE")
     elif settings.fold == 0.0 and not settings.handles:
-        say(box, context, wording.NEXT if settings.creases else wording.NEXT_BLANK, "INFO")
+        box.say(wording.NEXT if settings.creases else wording.NEXT_BLANK, "INFO")
     sheet = settings.sheet
     # A paper that has none, and has compared its scale with one, has lost it for good.
     if settings.sheet_scale > 0.0 if sheet is None else drawing_objects.is_deleted(sheet):
-        say(box, context, wording.SHEET_DELETED, "ERROR")
+        box.say(wording.SHEET_DELETED, "ERROR")
     elif sheet is not None and live.sheet_here(settings) is None:
-        say(box, context, wording.SHEET_ELSEWHERE, "INFO")
-    column = layout.column()
-    column.scale_y = 1.3
-    column.prop(settings, "fold", slider=True)
-    row = layout.row(align=True)
-    row.prop(settings, "live", toggle=True, icon="PLAY")
-    row.operator("curvefold.flatten", text="Flatten", icon="MESH_PLANE")
-    if report is not None and report.state == "trouble" and not live.why_it_stays(mesh):
-        layout.operator("curvefold.fold_anew", icon="FILE_REFRESH")
+        box.say(wording.SHEET_ELSEWHERE, "INFO")
 
 
 class HandleList(bpy.types.UIList):
@@ -173,7 +213,7 @@ class HandlesPanel(PaperPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        settings = live.active_paper(context).data.curvefold
+        settings = paper_settings(self.layout, context)
         column = layout.column(align=True)
         column.operator("curvefold.place_handle", icon="CURSOR")
         row = column.row(align=True)
@@ -213,7 +253,36 @@ class DrawingPanel(PaperPanel, bpy.types.Panel):
         # With a part of the drawing active, the main panel has them.
         sheet = live.sheet_here(settings)
         if sheet is not None and not _is_drawing(context):
-            _draw_drawing_tools(self.layout, context, sheet)
+            _draw_drawing_tools(self.layout, sheet)
+            box = KeptBox(self.layout, context, DRAWING_LINES)
+            for trouble in trouble_marks.of_sheet(sheet):
+                box.say(trouble.sentence, "ERROR", alert=True)
+            box.fill()
+
+
+class NotesPanel(Tab, bpy.types.Panel):
+    """What was decided when the drawing was read from its file"""
+
+    bl_idname = "CURVEFOLD_PT_notes"
+    bl_label = "Import Notes"
+    bl_parent_id = "CURVEFOLD_PT_main"
+    bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return bool(_notes(context))
+
+    def draw(self, context: bpy.types.Context) -> None:
+        for note in _notes(context).splitlines():
+            say(self.layout, context, note, "DOT")
+
+
+def _notes(context: bpy.types.Context) -> str:
+    """Those of the sheet that is meant; of a paper that has none, its own."""
+    sheet, paper = drawing_context.active_sheet(context), live.active_paper(context)
+    if paper is not None and paper.data.curvefold.notes:
+        return paper.data.curvefold.notes
+    return "" if sheet is None else sheet.curvefold.notes
 
 
 class OverlaysPanel(Tab, bpy.types.Panel):
@@ -282,12 +351,14 @@ class AdvancedPanel(PaperPanel, bpy.types.Panel):
         column = self.layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
-        column.prop(mesh.curvefold, "angle")
-        column.prop(mesh.curvefold, "resolution")
-        if mesh.curvefold.resolution == AUTOMATIC and report is not None and report.resolution:
-            row = column.split(factor=0.4)
-            row.label(text="")
-            row.label(text=f"Automatic: {report.resolution}")
+        part = column.column()
+        part.enabled = not live.why_it_does_not_fold(mesh)
+        part.prop(mesh.curvefold, "angle")
+        part.prop(mesh.curvefold, "resolution")
+        row = column.split(factor=0.4)
+        row.label(text="")
+        automatic = mesh.curvefold.resolution == AUTOMATIC and report is not None and report.resolution
+        row.label(text=f"Automatic: {report.resolution}" if automatic else "")
         column.operator("curvefold.settle", text="Fold until Settled", icon="CHECKMARK")
         column.operator("curvefold.check_paper", icon="VIEWZOOM")
         column.operator("curvefold.make_ordinary_mesh", icon="OUTLINER_OB_MESH")
@@ -307,6 +378,7 @@ _CLASSES = (
     FlowPanel,
     JointsPanel,
     DrawingPanel,
+    NotesPanel,
     OverlaysPanel,
     AnimationPanel,
     AdvancedPanel,

@@ -18,12 +18,15 @@ STATE_ICONS = {"settled": "CHECKMARK", "folding": "SORTTIME", "trouble": "ERROR"
 
 NO_SHEET = "Start with a sheet of paper, a sample, or a drawing"
 NO_CREASE = "Draw creases on it: curves along which the paper folds"
+READY = "Make Paper makes a sheet of it that folds"
+SEVERAL = "Make Paper makes a paper of each of them"
 DRAWING = "Draw from border to border, or edit the points; Tab ends it"
 NEXT = "Slide Fold, or place handles and drag them"
 NEXT_BLANK = "Place handles and drag them"
 ASLEEP = "Asleep: it wakes when something moves"
 NOT_LIVE = "Not live: it stays as it is"
 KEYED = "Its shape keys hide how it folds: remove them"
+EDITED = "In Edit Mode: choose points for handles and joints; it folds again after Tab"
 BAKED = "Baked: it plays its shape keys"
 SHEET_DELETED = (
     "Its sheet was deleted: the paper keeps its shape and its creases; choose another sheet under Drawing, or none"
@@ -46,14 +49,19 @@ def crease_name(report: CreaseReport) -> str:
     return report.label if numbered is None else numbered[1]
 
 
+def angle(report: CreaseReport) -> str:
+    """How far a crease is folded, in short."""
+    return "" if report.fold_angle is None else f"{report.fold_angle:.0f}°"
+
+
 def crease(report: CreaseReport) -> str:
     """What became of a crease."""
-    angle = "" if report.fold_angle is None else f" {report.fold_angle:.0f}°"
+    degrees = "" if report.fold_angle is None else f" {angle(report)}"
     if report.found not in ("M", "V"):
         changes = report.folded and report.fold_angle is not None and report.fold_angle >= FLAT_ANGLE
-        return f"Changes sides{angle}" if changes else SIDES["U"]
+        return f"Changes sides{degrees}" if changes else SIDES["U"]
     gaps = "" if report.folded else ", with gaps"
-    return f"{SIDES[report.found]}{angle}{gaps}"
+    return f"{SIDES[report.found]}{degrees}{gaps}"
 
 
 def progress(report: CreaseReport) -> str:

@@ -19,6 +19,8 @@ class AddHandles(OnPaper, bpy.types.Operator):
     bl_label = "Add Handles"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
+    selects = "Select vertices of the paper in Edit Mode first"
+
     together: BoolProperty(
         name="Together",
         description="One empty moves, turns and scales all points; otherwise each gets its own",
@@ -28,7 +30,7 @@ class AddHandles(OnPaper, bpy.types.Operator):
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
         points = selected_points(paper)
         if not points:
-            return self.refuse("Select vertices of the paper in Edit Mode first")
+            return self.refuse(self.selects)
         leave_edit_mode(paper)
         empty = None
         for point in points:

@@ -12,6 +12,7 @@ from ..control_properties import RELATIONS, SHAPES
 from .add_handles import leave_edit_mode, selected_points
 from .on_paper import OnPaper, remove_entry
 
+_TWO_POINTS = "Select two vertices of the paper in Edit Mode, or two of its handles"
 _NAMES = {"POINTS": "Points", "BORDERS": "Seam", "PATCH": "Patch"}
 
 
@@ -24,10 +25,20 @@ class JoinPoints(OnPaper, bpy.types.Operator):
 
     relation: EnumProperty(name="They", items=RELATIONS, default="MEET")
 
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not super().poll(context):
+            return False
+        paper = live.active_paper(context)
+        if paper.mode != "EDIT" and len(_points_of_hooks(context, paper)) != 2:
+            cls.poll_message_set(_TWO_POINTS)
+            return False
+        return True
+
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
         points = [point.at for point in selected_points(paper)] or _points_of_hooks(context, paper)
         if len(points) != 2:
-            return self.refuse("Select two vertices of the paper in Edit Mode, or two of its handles")
+            return self.refuse(_TWO_POINTS)
         _leave_edit_mode(paper)
         found = live.make_session(paper)
         places = [found.place_of(point) for point in points]
@@ -46,10 +57,12 @@ class GlueBorders(OnPaper, bpy.types.Operator):
     bl_label = "Glue Borders"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
+    selects = "Select the vertices of two stretches of the border in Edit Mode"
+
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
-        borders = surface_points.selected_borders(paper.data) if paper.mode == "EDIT" else []
+        borders = surface_points.selected_borders(paper.data)
         if len(borders) != 2:
-            return self.refuse("Select the vertices of two stretches of the border in Edit Mode")
+            return self.refuse(self.selects)
         leave_edit_mode(paper)
         live.make_session(paper)
         joint = _add(paper, "BORDERS")
@@ -68,12 +81,14 @@ class KeepPatch(OnPaper, bpy.types.Operator):
     bl_label = "Keep Patch"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
+    selects = "Select a face of the patch in Edit Mode"
+
     shape: EnumProperty(name="Keep", items=SHAPES, default="FLAT")
 
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
-        points = surface_points.selected_patches(paper.data) if paper.mode == "EDIT" else []
+        points = surface_points.selected_patches(paper.data)
         if not points:
-            return self.refuse("Select a face of the patch in Edit Mode")
+            return self.refuse(self.selects)
         leave_edit_mode(paper)
         live.make_session(paper)
         for point in points:

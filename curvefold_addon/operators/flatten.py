@@ -14,9 +14,9 @@ class Flatten(OnPaper, bpy.types.Operator):
     bl_idname = "curvefold.flatten"
     bl_label = "Flatten"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+    folds = True
 
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
-        live.check_writable(paper.data)
         live.make_session(paper)  # before anything is changed: a paper that cannot be read stays as it is
         handle_making.lay_flat(paper)
         live.flatten(paper)

@@ -14,9 +14,9 @@ class FoldAnew(OnPaper, bpy.types.Operator):
     bl_idname = "curvefold.fold_anew"
     bl_label = "Fold Anew"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+    folds = True
 
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
-        live.check_writable(paper.data)
         if not live.fold_anew(paper):
             return self.refuse("Nothing pulls at this paper: move a handle or the slider first")
         if bpy.app.background:

@@ -12,9 +12,13 @@ class OnPaper:
     """An operator on the paper that is active, or whose handle is.
 
     only_looks: whether it changes nothing of the paper, so that it works on linked papers too
+    folds: whether it folds the paper at once, so that the paper has to be one that can be folded now
+    selects: what has to be selected in Edit Mode, a sentence; empty for operators that need nothing
     """
 
     only_looks = False
+    folds = False
+    selects = ""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -23,6 +27,10 @@ class OnPaper:
             cls.poll_message_set("Select a paper or one of its handles")
             return False
         reason = "" if cls.only_looks else linked.why_not_changeable(paper.name, paper.data)
+        if not reason and cls.folds:
+            reason = live.why_it_does_not_fold(paper.data)
+        if not reason and cls.selects and paper.mode != "EDIT":
+            reason = cls.selects
         if reason:
             cls.poll_message_set(reason)
         return not reason

@@ -40,10 +40,12 @@ class AddAngles(OnPaper, bpy.types.Operator):
     bl_label = "Add Angles"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
+    selects = "Select vertices on creases of the paper in Edit Mode"
+
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
-        points = surface_points.selected_on_creases(paper.data) if paper.mode == "EDIT" else []
+        points = surface_points.selected_on_creases(paper.data)
         if not points:
-            return self.refuse("Select vertices on creases of the paper in Edit Mode")
+            return self.refuse(self.selects)
         leave_edit_mode(paper)
         if not _ask(paper, points):
             return self.refuse(_NO_ROOM)

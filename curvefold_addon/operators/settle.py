@@ -14,6 +14,7 @@ class Settle(OnPaper, bpy.types.Operator):
     bl_idname = "curvefold.settle"
     bl_label = "Settle"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+    folds = True
 
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
         live.settle(paper.data)

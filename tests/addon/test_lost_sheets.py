@@ -26,7 +26,7 @@ def sidebar(extension, monkeypatch):
     def said() -> list[str]:
         sentences = []
         with monkeypatch.context() as patch:
-            patch.setattr(panels, "say", lambda layout, context, text, *icon, **options: sentences.append(text))
+            patch.setattr(panels.KeptBox, "say", lambda box, text, *icon, **options: sentences.append(text))
             panels.MainPanel.draw(Anything(), bpy.context)
         return sentences
 

@@ -7,23 +7,38 @@ import bpy
 import pytest
 
 
+class Told:
+    """The properties of a button that adds a sample."""
+
+    def __init__(self, samples):
+        object.__setattr__(self, "samples", samples)
+
+    def __setattr__(self, name, value):
+        assert name == "sample"
+        self.samples.append(value)
+
+
 class Notes:
     """Stands in for UILayout: checks that what is asked for exists, and writes it down."""
 
-    def __init__(self, notes=None):
-        self.notes = (
-            {"texts": [], "operators": [], "properties": [], "menus": [], "grey": []} if notes is None else notes
-        )
-        self.enabled = True
+    def __init__(self, notes=None, enabled=True):
+        kinds = ("texts", "operators", "properties", "menus", "grey", "pictures", "samples")
+        self.notes = {kind: [] for kind in kinds} | {"lines": 0} if notes is None else notes
+        self.enabled = enabled
 
     def _part(self, **options):
-        return Notes(self.notes)
+        return Notes(self.notes, self.enabled)
 
     column = row = box = split = _part
 
     def label(self, text="", icon="NONE"):
         assert icon in ICONS
-        self.notes["texts"].append(text)
+        self.notes["lines"] += 1
+        if text:
+            self.notes["texts"].append(text)
+
+    def template_icon(self, icon_value, scale=1.0):
+        self.notes["pictures"].append(icon_value)
 
     def separator(self):
         pass
@@ -32,6 +47,8 @@ class Notes:
         assert name in data.bl_rna.properties, name
         assert icon in ICONS
         self.notes["properties"].append(name)
+        if not self.enabled:
+            self.notes["grey"].append(name)
 
     def progress(self, factor=0.0, text=""):
         assert 0.0 <= factor <= 1.0
@@ -42,9 +59,12 @@ class Notes:
         group, _, name = idname.partition(".")
         assert name in dir(getattr(bpy.ops, group)), idname
         self.notes["operators"].append(idname)
+        told = SimpleNamespace()
+        if idname == "curvefold.add_sample":
+            told = Told(self.notes["samples"])
         if not self.enabled:
             self.notes["grey"].append(idname)
-        return SimpleNamespace()
+        return told
 
     def operator_menu_enum(self, idname, name, text="", icon="NONE"):
         self.operator(idname, text, icon)
@@ -110,10 +130,12 @@ def paper():
     return bpy.context.active_object
 
 
-def test_a_newcomer_is_offered_a_sheet_a_sample_and_a_drawing(panels):
+def test_a_newcomer_is_offered_a_sheet_a_sample_and_a_drawing(panels, extension):
     notes = drawn(panels.MainPanel)
-    assert notes["operators"] == ["curvefold.add_sheet", "curvefold.import_drawing"]
-    assert notes["menus"] == ["CURVEFOLD_MT_samples"]
+    assert notes["operators"][:2] == ["curvefold.add_sheet", "curvefold.import_drawing"]
+    names = extension("curvefold_addon.samples").names()
+    assert notes["operators"].count("curvefold.add_sample") == len(notes["pictures"]) == len(names)
+    assert notes["samples"] == names
     assert shown(panels) == {"MainPanel"}
 
 
@@ -125,9 +147,9 @@ def test_a_closed_curve_can_become_a_sheet(panels):
 def test_a_sheet_is_offered_creases_and_then_paper(panels, wording):
     bpy.ops.curvefold.add_sheet()
     notes = drawn(panels.MainPanel)
-    assert notes["operators"] == ["curvefold.draw_crease", "curvefold.make_paper"]
+    assert {"curvefold.draw_crease", "curvefold.make_paper"} <= set(notes["operators"])
     assert notes["grey"] == [], "a sheet without creases is paper too"
-    assert said(notes) == f"A4 Sheet: No creases {wording.NO_CREASE}", "nothing is wrong with a new sheet"
+    assert said(notes) == f"A4 Sheet: No creases Selected creases fold to {wording.NO_CREASE}", "nothing is wrong"
     bpy.ops.curvefold.draw_crease()
     bpy.ops.object.mode_set(mode="EDIT")
     texts = drawn(panels.MainPanel)["texts"]
@@ -140,7 +162,7 @@ def test_a_sheet_is_offered_creases_and_then_paper(panels, wording):
     notes = drawn(panels.MainPanel)
     assert "1 crease" in notes["texts"][0]
     assert notes["grey"] == []
-    assert shown(panels) == {"MainPanel", "OverlaysPanel"}
+    assert shown(panels) == {"MainPanel", "NotesPanel", "OverlaysPanel"}
 
 
 def test_troubles_of_the_drawing_are_named(panels):
@@ -166,8 +188,8 @@ def test_a_paper_says_how_it_stands_and_has_its_slider(panels, extension, paper)
     said = " ".join(notes["texts"])
     assert report.sentence in said
     assert f"Stretch {report.stretch_mean:.2%} mean" in said
-    assert notes["properties"] == ["fold", "live"]
-    assert len(shown(panels)) == 11
+    assert notes["properties"] == ["fold", "live", "show"]
+    assert shown(panels) == {cls.__name__ for cls in panels._CLASSES if issubclass(cls, bpy.types.Panel)}
 
 
 def activate(item):
@@ -188,9 +210,8 @@ def test_at_a_drawing_the_paper_that_follows_it_is_shown_and_one_button_leads_ba
         bpy.ops.object.mode_set(mode="EDIT")
     notes = drawn(panels.MainPanel)
     assert extension("curvefold_addon.live").report(paper.data).sentence in said(notes)
-    assert notes["properties"] == ["fold", "live"]
-    assert "curvefold.draw_crease" in notes["operators"]
-    assert notes["operators"][-2:] == ["curvefold.back_to_paper", "curvefold.make_paper"]
+    assert notes["properties"] == ["show", "fold", "live"]
+    assert {"curvefold.draw_crease", "curvefold.back_to_paper", "curvefold.make_paper"} <= set(notes["operators"])
     assert {"HandlesPanel", "CreasesPanel", "AdvancedPanel"} <= shown(panels)
     assert "curvefold.draw_crease" not in drawn(panels.DrawingPanel)["operators"], "once is enough"
     assert bpy.ops.curvefold.back_to_paper() == {"FINISHED"}
@@ -219,7 +240,7 @@ def test_of_several_papers_of_a_drawing_the_first_by_name_is_shown(panels, paper
     other = bpy.context.active_object
     assert other != paper
     activate(sheet)
-    assert "Paper, one of 2 papers of this drawing" in drawn(panels.MainPanel)["texts"]
+    assert "Paper, one of 2 papers of this drawing" in said(drawn(panels.MainPanel))
     bpy.ops.curvefold.back_to_paper()
     assert bpy.context.active_object == paper
     bpy.data.objects.remove(paper)
@@ -231,7 +252,7 @@ def test_of_several_papers_of_a_drawing_the_first_by_name_is_shown(panels, paper
 def test_a_drawing_that_no_paper_follows_is_offered_paper(panels, paper):
     bpy.ops.curvefold.add_sheet()
     assert "curvefold.make_paper" in drawn(panels.MainPanel)["operators"]
-    assert drawn(panels.MainPanel)["properties"] == []
+    assert drawn(panels.MainPanel)["properties"] == ["show"]
     assert not bpy.ops.curvefold.back_to_paper.poll()
     sheet = paper.data.curvefold.sheet
     bpy.data.objects.remove(paper)
@@ -243,8 +264,8 @@ def test_a_drawing_that_no_paper_follows_is_offered_paper(panels, paper):
 def test_beside_a_drawing_that_a_paper_follows_the_way_back_is_offered_too(panels, paper):
     bpy.ops.object.camera_add()
     notes = drawn(panels.MainPanel)
-    assert notes["operators"][-2:] == ["curvefold.back_to_paper", "curvefold.make_paper"]
-    assert shown(panels) == {"MainPanel", "OverlaysPanel"}, "a camera is no part of it"
+    assert {"curvefold.back_to_paper", "curvefold.make_paper"} <= set(notes["operators"])
+    assert shown(panels) == {"MainPanel", "NotesPanel", "OverlaysPanel"}, "a camera is no part of it"
     assert bpy.ops.curvefold.back_to_paper() == {"FINISHED"}
     assert bpy.context.active_object == paper
 
@@ -305,10 +326,12 @@ def test_creases_are_listed_with_side_and_angle(panels, paper):
         None, context(), layout, settings, settings.creases[0], 0, settings, "active_crease", 0
     )
     texts = layout.notes["texts"]
-    assert len(texts) == 3, "the third is a lock"
+    assert layout.notes["lines"] == 3, "the third is a lock"
     assert texts[0] == "Crease 1"
-    assert texts[1].split()[0] in ("Valley", "Mountain")
-    assert 40 < float(texts[1].split()[1].rstrip("°,")) < 60
+    assert 40 < float(texts[1].rstrip("°")) < 60
+    below = notes["texts"][-1].split()
+    assert below[:3] in (["Crease", "1:", "Valley"], ["Crease", "1:", "Mountain"])
+    assert below[3] == texts[1], "the same number in words below"
 
 
 def test_a_handle_is_listed_with_all_that_can_be_set(panels, paper):
@@ -482,9 +505,103 @@ def test_a_paper_that_was_changed_by_hand_offers_both_ways_out(panels, paper, ex
     paper.data.vertices[0].co.z += 0.01
     notes = drawn(panels.MainPanel)
     assert extension("curvefold_addon.live").BY_HAND in said(notes)
-    assert notes["operators"][:2] == ["curvefold.restore_paper", "curvefold.make_ordinary_mesh"]
-    assert "curvefold.fold_anew" not in notes["operators"]
+    assert notes["operators"][-2:] == ["curvefold.restore_paper", "curvefold.make_ordinary_mesh"]
+    assert not bpy.ops.curvefold.fold_anew.poll()
     # In the words of the sentence.
-    for operator in notes["operators"][:2]:
+    for operator in notes["operators"][-2:]:
         label = getattr(bpy.ops.curvefold, operator.partition(".")[2]).get_rna_type().name
         assert label in said(notes)
+
+
+# --- nothing moves -----------------------------------------------------------------------------------------------
+
+
+def height(panel):
+    """Lines of text, and rows of buttons below or above them, of a panel."""
+    notes = drawn(panel)
+    return notes["lines"], len(notes["operators"]), len(notes["properties"])
+
+
+@pytest.mark.parametrize("state", ["flat", "asleep", "not live", "out of reach", "baked"])
+def test_the_tab_is_as_high_in_every_state(panels, extension, paper, state):
+    live, settings = extension("curvefold_addon.live"), paper.data.curvefold
+    before = height(panels.MainPanel)
+    first = said(drawn(panels.MainPanel))
+    if state == "flat":
+        bpy.ops.curvefold.flatten()
+    elif state == "asleep":
+        live.forget()
+    elif state == "not live":
+        settings.live = False
+    elif state == "out of reach":
+        for at in ((-0.02, 0.0), (0.02, 0.0)):
+            bpy.ops.curvefold.add_handle(at=at, paper=paper.name)
+        settings.handles[0].hook.location.z += 1.0
+        bpy.context.view_layer.update()
+        live.settle(paper.data)
+        assert live.report(paper.data).state == "trouble"
+    else:
+        bpy.context.scene.frame_end = 2
+        bpy.ops.curvefold.bake()
+    assert said(drawn(panels.MainPanel)) != first
+    assert height(panels.MainPanel) == before
+
+
+def test_what_is_said_stands_below_what_is_clicked(panels, monkeypatch, paper):
+    order = []
+    monkeypatch.setattr(Notes, "operator", lambda self, *a, **o: order.append("button") or SimpleNamespace())
+    monkeypatch.setattr(Notes, "prop", lambda self, *a, **o: order.append("button"))
+    monkeypatch.setattr(panels.KeptBox, "say", lambda *a, **o: order.append("sentence"))
+    sheet = paper.data.curvefold.sheet
+    for item in (paper, sheet, sheet.children[0]):
+        order.clear()
+        activate(item)
+        drawn(panels.MainPanel)
+        assert order.index("sentence") > max(k for k, kind in enumerate(order) if kind == "button")
+
+
+@pytest.mark.parametrize("panel", ["HandlesPanel", "CreasesPanel", "FlowPanel", "PointAnglesPanel", "JointsPanel"])
+def test_a_baked_paper_looks_disabled(panels, extension, paper, panel):
+    panel = getattr(panels, panel)
+
+    def enabled():
+        layout = Notes()
+        panel.draw(SimpleNamespace(layout=layout), context())
+        return layout.enabled
+
+    assert enabled()
+    assert "fold" not in drawn(panels.MainPanel)["grey"]
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert enabled(), "points are chosen there"
+    assert "fold" in drawn(panels.MainPanel)["grey"], "but nothing folds"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.scene.frame_end = 2
+    bpy.ops.curvefold.bake()
+    assert not enabled()
+    assert {"fold", "live"} <= set(drawn(panels.MainPanel)["grey"])
+    bpy.ops.curvefold.free_bake()
+    assert enabled()
+
+
+def test_buttons_for_chosen_points_look_disabled_in_object_mode(paper):
+    operators = [getattr(bpy.ops.curvefold, name) for name in ("add_handles", "add_angles", "glue_borders")]
+    operators += [bpy.ops.curvefold.keep_patch, bpy.ops.curvefold.join_points]
+    folding = [bpy.ops.curvefold.flatten, bpy.ops.curvefold.fold_anew, bpy.ops.curvefold.settle]
+    assert not any(operator.poll() for operator in operators)
+    assert all(operator.poll() for operator in folding)
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert all(operator.poll() for operator in operators)
+    assert not any(operator.poll() for operator in folding)
+
+
+def test_import_notes_can_be_read_again_at_the_sheet_and_at_its_paper(panels):
+    bpy.ops.curvefold.add_sheet()
+    assert "NotesPanel" not in shown(panels)
+    bpy.ops.curvefold.add_sample(sample="one_arc")
+    sheet = bpy.context.active_object
+    sheet.curvefold.notes = "the page is the border\n2 lines are left out"
+    assert drawn(panels.NotesPanel)["texts"] == sheet.curvefold.notes.splitlines()
+    bpy.ops.curvefold.make_paper(resolution=8)
+    assert drawn(panels.NotesPanel)["texts"] == sheet.curvefold.notes.splitlines()
+    bpy.context.active_object.data.curvefold.notes = "folded from a file"
+    assert drawn(panels.NotesPanel)["texts"] == ["folded from a file"]
