@@ -14,6 +14,32 @@ def unregister() -> None:
 
 
 def _modules():
-    from . import cli, drop_drawing, handlers, operators, overlay, panels, preferences, properties
+    from . import (
+        cli,
+        context_menu,
+        drop_drawing,
+        handlers,
+        keymaps,
+        operators,
+        overlay,
+        panels,
+        preferences,
+        properties,
+        tools,
+        translations,
+    )
 
-    return (properties, preferences, operators, drop_drawing, cli, handlers, overlay, panels)
+    return (
+        translations,
+        properties,
+        preferences,
+        operators,
+        drop_drawing,
+        cli,
+        handlers,
+        overlay,
+        panels,
+        context_menu,
+        tools,
+        keymaps,
+    )

@@ -105,9 +105,11 @@ class FlowPanel(PaperPanel, bpy.types.Panel):
         if crease.flow == "OBJECT":
             column.prop(crease, "curve")
         elif crease.flow == "SHAPE":
-            column.prop(crease, "curvature_times")
-            column.prop(crease, "curvature_plus")
-            column.prop(crease, "torsion_plus")
+            part = column.column(align=True)
+            part.use_property_split = False  # their names are too long to stand beside the numbers
+            part.prop(crease, "curvature_times")
+            part.prop(crease, "curvature_plus")
+            part.prop(crease, "torsion_plus")
         if crease.flow != "NONE":
             column.prop(crease, "progress", slider=True)
             found = live.crease_report(settings.id_data, settings.active_crease)
@@ -239,7 +241,8 @@ class WeightsPanel(PaperPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = paper_settings(self.layout, context)
-        column = settings_column(self.layout)
+        # Their names are too long to stand beside the numbers.
+        column = self.layout.column()
         for name, _, _ in WEIGHTS:
             column.prop(settings.weights, name)
         column.operator("curvefold.usual_weights", icon="LOOP_BACK")

@@ -6,6 +6,8 @@ import bpy
 
 from . import live, wording
 
+#: A text in the language of Blender's interface.
+translated = bpy.app.translations.pgettext_iface
 #: Height of a line of text among others, in lines of buttons.
 LINE = 0.9
 
@@ -22,7 +24,7 @@ def say(
     column.scale_y = LINE
     column.alert = alert
     width = context.region.width / context.preferences.system.ui_scale
-    lines = wording.lines(sentence, width)
+    lines = wording.lines(translated(sentence), width)
     for k, line in enumerate(lines):
         if icon == "NONE":
             column.label(text=line)

@@ -330,8 +330,7 @@ class AnimationPanel(PaperPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         mesh = live.active_paper(context).data
         column = self.layout.column()
-        column.use_property_split = True
-        column.use_property_decorate = False
+        # Its name is too long to stand beside the number.
         column.prop(mesh.curvefold, "iterations_per_frame")
         if baking.is_baked(mesh):
             column.operator("curvefold.free_bake", icon="TRASH")

@@ -3,6 +3,8 @@
 import bpy
 from bpy.props import IntProperty
 
+from . import keymaps
+
 #: The package of the whole extension.
 EXTENSION = __package__.rpartition(".")[0]
 
@@ -26,6 +28,8 @@ class CurvefoldPreferences(bpy.types.AddonPreferences):
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True
         self.layout.prop(self, "budget")
+        self.layout.label(text="Keys in Object Mode")
+        keymaps.draw(self.layout, context)
 
 
 def budget_seconds() -> float:

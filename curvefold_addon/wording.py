@@ -2,6 +2,7 @@
 
 import re
 import textwrap
+import unicodedata
 
 from ..solver.measurement import FLAT_ANGLE
 from .bridge.report import CreaseReport, Report, stretch_words
@@ -86,4 +87,7 @@ def readable(text: str) -> str:
 
 def lines(sentence: str, width: float) -> list[str]:
     """A sentence in lines that fit into so many pixels (at a resolution scale of 1)."""
-    return textwrap.wrap(sentence, max(16, int((width - _MARGIN) / _LETTER)))
+    # Letters of Chinese and Japanese are twice as wide.
+    wide = sum(unicodedata.east_asian_width(letter) in "WF" for letter in sentence)
+    letter_width = _LETTER * (1.0 + wide / max(1, len(sentence)))
+    return textwrap.wrap(sentence, max(8 if wide else 16, int((width - _MARGIN) / letter_width)))

@@ -31,6 +31,8 @@ from . import (
     set_assignment,
     settle,
     sheet_from_object,
+    stroke_crease,
+    take_handle,
     usual_weights,
 )
 
@@ -39,6 +41,7 @@ _MODULES = (
     add_sample,
     sheet_from_object,
     draw_crease,
+    stroke_crease,
     edit_drawing,
     make_crease,
     set_assignment,
@@ -48,6 +51,7 @@ _MODULES = (
     back_to_paper,
     add_handle,
     place_handle,
+    take_handle,
     add_handles,
     hook_object,
     pin,

@@ -15,6 +15,7 @@ ROWS = 4
 PICTURE = 5.0
 #: The same of the buttons with small pictures in the tab.
 SMALL_PICTURE = 2.0
+_ITEMS = [(name, samples.label(name), f"The drawing {samples.label(name)}") for name in samples.names()]
 
 
 class AddSample(bpy.types.Operator):
@@ -24,7 +25,7 @@ class AddSample(bpy.types.Operator):
     bl_label = "Paper Sample"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
-    sample: EnumProperty(name="Sample", items=[(name, samples.label(name), "") for name in samples.names()])
+    sample: EnumProperty(name="Sample", items=_ITEMS)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

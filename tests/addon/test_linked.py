@@ -37,7 +37,7 @@ ON_PAPERS = {
 }
 #: Operators that change the active sheet, or selected creases.
 ON_DRAWINGS = {"draw_crease", "edit_drawing", "make_crease", "set_assignment"}
-#: Operators that only look, or make something new.
+#: Operators that only look, make something new, or leave the work to one of the others.
 NEUTRAL = {
     "add_sample",
     "add_sheet",
@@ -50,6 +50,8 @@ NEUTRAL = {
     "make_paper",
     "rulings_as_object",
     "sheet_from_object",
+    "stroke_crease",
+    "take_handle",
 }
 
 

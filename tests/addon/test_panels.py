@@ -21,13 +21,14 @@ class Told:
 class Notes:
     """Stands in for UILayout: checks that what is asked for exists, and writes it down."""
 
-    def __init__(self, notes=None, enabled=True):
+    def __init__(self, notes=None, enabled=True, split=False):
         kinds = ("texts", "operators", "properties", "menus", "grey", "pictures", "samples")
         self.notes = {kind: [] for kind in kinds} | {"lines": 0} if notes is None else notes
         self.enabled = enabled
+        self.use_property_split = split
 
     def _part(self, **options):
-        return Notes(self.notes, self.enabled)
+        return Notes(self.notes, self.enabled, self.use_property_split)
 
     column = row = box = split = _part
 
@@ -47,6 +48,9 @@ class Notes:
         assert name in data.bl_rna.properties, name
         assert icon in ICONS
         self.notes["properties"].append(name)
+        label = data.bl_rna.properties[name].name if text is None else text
+        if self.use_property_split and data.bl_rna.properties[name].type != "BOOLEAN":
+            assert len(label) <= BESIDE, f"{label} is cut"
         if not self.enabled:
             self.notes["grey"].append(name)
 
@@ -80,6 +84,8 @@ class Notes:
         self.notes["properties"].append(collection)
 
 
+#: Letters of a name that stands beside its field, in a sidebar of Blender's usual width.
+BESIDE = 14
 ICONS = set(bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys())
 
 
