@@ -18,12 +18,16 @@ def say(
     sentence: str,
     icon: str = "NONE",
     alert: bool = False,
+    inset: float = 0.0,
 ) -> int:
-    """A sentence in as many lines as the sidebar needs, and how many these are; red when it is an ``alert``."""
+    """A sentence in as many lines as the sidebar needs, and how many these are; red when it is an ``alert``.
+
+    inset: how much narrower than the sidebar the layout is, pixels at a scale of 1
+    """
     column = layout.column(align=True)
     column.scale_y = LINE
     column.alert = alert
-    width = context.region.width / context.preferences.system.ui_scale
+    width = context.region.width / context.preferences.system.ui_scale - inset
     lines = wording.lines(translated(sentence), width)
     for k, line in enumerate(lines):
         if icon == "NONE":
@@ -31,6 +35,10 @@ def say(
         else:
             column.label(text=line, icon=icon if k == 0 else "BLANK1")
     return len(lines)
+
+
+#: How much narrower the inside of a box is, pixels at a scale of 1.
+BOX_INSET = 16.0
 
 
 class KeptBox:
@@ -44,7 +52,7 @@ class KeptBox:
         self._context, self._free = context, lines
 
     def say(self, sentence: str, icon: str = "NONE", alert: bool = False) -> None:
-        self._free -= say(self._column, self._context, sentence, icon, alert)
+        self._free -= say(self._column, self._context, sentence, icon, alert, BOX_INSET)
 
     def button(self, operator: str, icon: str) -> None:
         self._column.operator(operator, icon=icon)

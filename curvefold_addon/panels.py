@@ -56,7 +56,7 @@ def _draw_beginning(layout: bpy.types.UILayout, context: bpy.types.Context) -> N
     _say_lost(box, context)
     box.say(wording.NO_SHEET, "INFO")
     box.fill()
-    layout.label(text="Samples")
+    layout.label(text="Samples", text_ctxt=wording.CONTEXT)
     add_sample.draw_buttons(layout.column(align=True))
 
 
@@ -114,7 +114,10 @@ def _draw_drawing_tools(layout: bpy.types.UILayout, sheet: bpy.types.Object) -> 
     for pair in ASSIGNMENT_BUTTONS:
         row = column.row(align=True)
         for key, text in pair:
-            row.operator("curvefold.set_assignment", text=text, depress=key == letter).assignment = key
+            button = row.operator(
+                "curvefold.set_assignment", text=text, text_ctxt=wording.CONTEXT, depress=key == letter
+            )
+            button.assignment = key
 
 
 #: The buttons of creases' assignments, line by line.

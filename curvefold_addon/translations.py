@@ -12,16 +12,19 @@ _TEXTS = (
     ("Paper Sheet", "Papierbogen", "用紙"),
     ("Drawing…", "Zeichnung …", "図面…"),
     ("Samples", "Beispiele", "サンプル"),
+    ("Sheet from Object", "Bogen aus Objekt", "オブジェクトから用紙"),
     ("Draw Crease", "Falz zeichnen", "折り線を描く"),
     ("Make Crease", "Zum Falz machen", "折り線にする"),
     ("Selected creases fold to", "Gewählte Falze werden zu", "選択した折り線の種類"),
     ("Valley", "Tal", "谷折り"),
     ("Mountain", "Berg", "山折り"),
+    ("Flat", "Flach", "平ら"),
     ("Free", "Frei", "自由"),
     ("Make Paper", "Papier machen", "紙を作成"),
     ("Another Paper", "Noch ein Papier", "別の紙を作成"),
     ("Back to the Paper", "Zurück zum Papier", "紙に戻る"),
-    ("Show Drawing", "Zeichnung zeigen", "図面を表示"),
+    ("Show Drawing", "Zeichnung", "図面を表示"),
+    ("Edit", "Bearbeiten", "編集"),
     ("Edit Drawing", "Zeichnung bearbeiten", "図面を編集"),
     ("Fold", "Falten", "折る"),
     ("Live", "Live", "ライブ"),
@@ -35,7 +38,8 @@ _TEXTS = (
     ("Creases", "Falze", "折り線"),
     ("Joints", "Verbindungen", "接合"),
     ("Import Notes", "Hinweise zum Import", "読み込みの注記"),
-    ("Flat", "Flach", "平ら"),
+    ("At Vertices", "An Punkten", "頂点に"),
+    ("Hook Selected", "Anhängen", "選択をフック"),
     ("Settled", "In Ruhe", "静止"),
     ("Folding…", "Faltet …", "折っています…"),
     (
@@ -64,8 +68,9 @@ _TEXTS = (
     (wording.BAKED, "Gebacken: es spielt seine Shape Keys", "ベイク済み: シェイプキーを再生します"),
 )
 
-#: Where Blender looks words up: those of properties and labels, and those of operators.
-_CONTEXTS = ("*", "Operator")
+#: Where Blender looks words up: those of properties and labels, those of operators, and those that mean something
+#: else elsewhere in Blender.
+_CONTEXTS = ("*", "Operator", wording.CONTEXT)
 
 
 def _of_language(column: int) -> dict[tuple[str, str], str]:

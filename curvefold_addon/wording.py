@@ -17,6 +17,9 @@ SIDE_ICONS = {"V": "COLORSET_04_VEC", "M": "COLORSET_01_VEC", "U": "REMOVE"}
 JOINT_ICONS = {"POINTS": "LINKED", "BORDERS": "MESH_CYLINDER", "PATCH": "FACESEL"}
 STATE_ICONS = {"settled": "CHECKMARK", "folding": "SORTTIME", "trouble": "ERROR"}
 
+#: Where words are looked up that mean something else elsewhere in Blender.
+CONTEXT = "Curvefold"
+
 NO_SHEET = "Start with a sheet of paper, a sample, or a drawing"
 NO_CREASE = "Draw creases on it: curves along which the paper folds"
 READY = "Make Paper makes a sheet of it that folds"

@@ -32,7 +32,7 @@ class Notes:
 
     column = row = box = split = _part
 
-    def label(self, text="", icon="NONE"):
+    def label(self, text="", icon="NONE", text_ctxt="*"):
         assert icon in ICONS
         self.notes["lines"] += 1
         if text:
@@ -58,7 +58,7 @@ class Notes:
         assert 0.0 <= factor <= 1.0
         self.notes["texts"].append(text)
 
-    def operator(self, idname, text="", icon="NONE", depress=False):
+    def operator(self, idname, text="", icon="NONE", depress=False, text_ctxt="*"):
         assert icon in ICONS
         group, _, name = idname.partition(".")
         assert name in dir(getattr(bpy.ops, group)), idname
