@@ -22,7 +22,7 @@ from .overlay import trouble_marks
 from .panel_parts import KeptBox, PaperPanel, Tab, paper_settings, say, switched_row
 
 #: Lines that are kept free for what is said of a paper, and of a drawing.
-PAPER_LINES, DRAWING_LINES = 5, 3
+PAPER_LINES, DRAWING_LINES = 4, 3
 
 
 class MainPanel(Tab, bpy.types.Panel):
@@ -78,7 +78,7 @@ def _draw_sheet(layout: bpy.types.UILayout, context: bpy.types.Context, sheet: b
     if followers:
         column.operator("curvefold.back_to_paper", icon="LOOP_BACK")
         layout.operator("curvefold.make_paper", text="Another Paper", icon="ADD")
-        _draw_controls(layout, drawing_context.meant_paper(context))
+        _draw_controls(layout, drawing_context.meant_paper(context), None)
     else:
         column.operator("curvefold.make_paper", icon="MOD_CLOTH")
     box = KeptBox(layout, context, DRAWING_LINES + (PAPER_LINES if followers else 0))
@@ -105,7 +105,7 @@ def _draw_drawing_tools(layout: bpy.types.UILayout, sheet: bpy.types.Object) -> 
     column.operator("curvefold.make_crease", icon="CURVE_DATA")
     row = column.row(align=True)
     row.operator("curvefold.edit_drawing", text="Edit", icon="EDITMODE_HLT")
-    row.prop(sheet.curvefold, "show", toggle=True, icon="HIDE_OFF" if sheet.curvefold.show else "HIDE_ON")
+    _draw_switch(row, sheet)
     active = bpy.context.active_object
     letter = active.curvefold.assignment if active is not None and drawing_objects.is_crease(active) else ""
     column = layout.column(align=True)
@@ -120,36 +120,41 @@ def _draw_drawing_tools(layout: bpy.types.UILayout, sheet: bpy.types.Object) -> 
             button.assignment = key
 
 
+def _draw_switch(layout: bpy.types.UILayout, sheet: bpy.types.Object) -> None:
+    """Show Drawing."""
+    shown = sheet.curvefold.show
+    layout.prop(sheet.curvefold, "show", toggle=True, icon="HIDE_OFF" if shown else "HIDE_ON")
+
+
 #: The buttons of creases' assignments, line by line.
 ASSIGNMENT_BUTTONS = ((("V", "Valley"), ("M", "Mountain")), (("U", "Free"), ("F", "Flat")))
 
 
 def _draw_paper(layout: bpy.types.UILayout, context: bpy.types.Context, paper: bpy.types.Object) -> None:
-    _draw_controls(layout, paper)
-    row = layout.row(align=True)
-    sheet = live.sheet_here(paper.data.curvefold)
-    if sheet is not None:
-        row.prop(sheet.curvefold, "show", toggle=True, icon="HIDE_OFF" if sheet.curvefold.show else "HIDE_ON")
-        row.operator("curvefold.edit_drawing", text="Edit", icon="EDITMODE_HLT")
-    else:
-        row.label(text="No drawing", icon="HIDE_ON")
+    _draw_controls(layout, paper, live.sheet_here(paper.data.curvefold))
     box = KeptBox(layout, context, PAPER_LINES)
     _say_lost(box, context)
     _say_standing(box, paper)
     box.fill()
 
 
-def _draw_controls(layout: bpy.types.UILayout, paper: bpy.types.Object) -> None:
+def _draw_controls(layout: bpy.types.UILayout, paper: bpy.types.Object, sheet: bpy.types.Object | None) -> None:
+    """The slider and its buttons; sheet: whose drawing can be shown and hidden there."""
     settings = paper.data.curvefold
-    column = layout.column()
-    column.enabled = not live.why_it_does_not_fold(paper.data)
-    row = column.row()
+    folds = not live.why_it_does_not_fold(paper.data)
+    row = layout.row()
     row.scale_y = 1.3
+    row.enabled = folds
     row.active = settings.live
     row.prop(settings, "fold", slider=True)
-    part = column.column(align=True)
+    column = layout.column(align=True)
+    row = column.row(align=True)
+    part = row.row(align=True)
+    part.enabled = folds
     part.prop(settings, "live", toggle=True, icon="PLAY")
-    row = part.row(align=True)
+    if sheet is not None:
+        _draw_switch(row, sheet)
+    row = column.row(align=True)
     row.operator("curvefold.flatten", text="Flatten", icon="MESH_PLANE")
     row.operator("curvefold.fold_anew", text="Fold Anew", icon="FILE_REFRESH")
 

@@ -88,7 +88,7 @@ def describe_creases(found: Session) -> tuple[CreaseReport, ...]:
 
 def stretch_words(mean: float, most: float) -> str:
     """How much a paper is stretched."""
-    return f"stretch {mean:.2%} mean, {most:.1%} at most"
+    return f"stretch {mean:.2%} mean, {most:.1%} max"
 
 
 def is_flat(found: Session) -> bool:
