@@ -122,6 +122,7 @@ def facts() -> dict:
             "parent": thing.parent.name if thing.parent else None,
             "place": list(thing.matrix_world.translation),
             "selected": thing.select_get(),
+            "seen": thing.visible_get(),
             "box": [list(thing.matrix_world @ Vector(corner)) for corner in thing.bound_box],
         }
         if thing.type == "CURVE":
