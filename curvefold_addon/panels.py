@@ -249,6 +249,7 @@ class OverlaysPanel(Tab, bpy.types.Panel):
         column = self.layout.column(align=True)
         column.operator("curvefold.rulings_as_object", icon="OUTLINER_OB_CURVE")
         column.operator("curvefold.gauss_image_as_object", icon="OUTLINER_OB_CURVE")
+        column.operator("curvefold.rulings_as_attribute", icon="SPREADSHEET")
 
 
 class AnimationPanel(PaperPanel, bpy.types.Panel):

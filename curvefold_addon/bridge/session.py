@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ...solver import Handle, HandleError, Measurement, PiecewiseDog, SqpReport, Status, measure
 from ...solver.controls.pull import Finding
 from ...solver.net.carry_over import carry_over
-from . import by_hand, nets, state, worker
+from . import by_hand, mesh_attributes, nets, state, worker
 from . import mesh as surface
 from .hooks import SAME_TARGET, WIDTH, Inputs, handles_begin, same
 from .nets import choose, drawn_of, net_of
@@ -70,6 +70,7 @@ class Session:
     run          the name of the motion, in the .blend too; empty when it has none yet
     frame        the last frame of an animation that the paper has followed
     failed       whether the numbers ran away; the last good shape is kept
+    ruled        the version of the shape whose rulings the mesh has, when it is asked for them
     """
 
     def __init__(self, source: state.Source, net: PiecewiseDog, positions: Array, rest: Array | None) -> None:
@@ -82,6 +83,7 @@ class Session:
         self.run = ""
         self.origin = ""  # the run that this one began at the rest of
         self.version = next(_versions)
+        self.ruled = -1
         self.failed = False
         self.inputs: Inputs | None = None
         self.report: SqpReport | None = None
@@ -96,6 +98,7 @@ class Session:
         self._taken: Step | None = None
         self._counted = 0
         self._written = positions
+        self._marked: Measurement | None = None
         self._anew: Rest | None = None
         self._off_sheet: dict[tuple[float, float], str] = {}
 
@@ -235,6 +238,7 @@ class Session:
             self.rest, self.origin, self.run, self.before = shape.rest, "", shape.run, None
             self.version = next(_versions)
         self._written = self.positions
+        self._marked = None
 
     def _leave_rest(self) -> None:
         if self.rest is None:
@@ -270,6 +274,9 @@ class Session:
     def write(self, mesh: Any) -> None:
         """Shows the present shape and keeps it on the datablock."""
         self._show(mesh)
+        if self._marked is not self.measurement or not mesh_attributes.is_measured(mesh):
+            mesh_attributes.write_measured(mesh, self.net, self.measurement)
+            self._marked = self.measurement
         if self.dirty:
             state.store_positions(mesh, self.positions)
             self._written = self.positions
