@@ -246,6 +246,25 @@ def restore(paper: bpy.types.Object) -> bool:
     return kept
 
 
+def keep_shape(paper: bpy.types.Object) -> Callable[[], None]:
+    """Keeps in mind how a paper is now; what is returned puts it there again, after frames of a film were shown."""
+    mesh = paper.data
+    if not _may_move(paper) or not hooks.is_animated(paper):
+        return lambda: None
+    try:
+        found = make_session(paper)
+    except (solver.CurvefoldError, state.StateError):
+        return lambda: None  # it does not follow the film either
+    put_back = found.keep_shape()
+
+    def back() -> None:
+        put_back()
+        found.write(mesh)
+        found.before = None
+
+    return back
+
+
 def drop(mesh: bpy.types.Mesh) -> None:
     """A mesh is no paper any more: nothing is left of what was known about it."""
     uid = mesh.session_uid

@@ -270,6 +270,19 @@ class AnimationPanel(PaperPanel, bpy.types.Panel):
             column.operator("curvefold.bake", icon="SHAPEKEY_DATA")
 
 
+class PicturePanel(PaperPanel, bpy.types.Panel):
+    """A picture or a film of the paper"""
+
+    bl_idname = "CURVEFOLD_PT_picture"
+    bl_label = "Picture"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.layout.column(align=True)
+        column.operator("curvefold.set_up_picture", icon="OUTLINER_OB_CAMERA")
+        column.operator("curvefold.remove_picture", icon="TRASH")
+        column.operator_menu_enum("curvefold.animate_picture", "kind", text="Animate", icon="RENDER_ANIMATION")
+
+
 class AdvancedPanel(PaperPanel, bpy.types.Panel):
     """How finely and how far"""
 
@@ -309,6 +322,7 @@ _CLASSES = (
     DrawingPanel,
     OverlaysPanel,
     AnimationPanel,
+    PicturePanel,
     AdvancedPanel,
     WeightsPanel,
 )

@@ -58,8 +58,8 @@ def write_rulings(mesh: Any, net: PiecewiseDog, found: Rulings) -> None:
     count = len(surface.face_patch)
     face = np.repeat(np.arange(count), np.diff(surface.face_start))
     corners = surface.uv[np.asarray(surface.face_vertices)]
-    middle = np.stack([np.bincount(face, corners[:, k], count) for k in range(2)], axis=-1)
-    middle /= np.bincount(face, minlength=count)[:, None]
+    sums = np.stack([np.bincount(face, corners[:, k], count) for k in range(2)], axis=-1)
+    middle: Array = sums / np.bincount(face, minlength=count)[:, None]
     near = _NEAR * float(np.ptp(surface.uv, axis=0).max())
     direction = np.zeros((count, 3))
     for patch in np.unique(found.patch):

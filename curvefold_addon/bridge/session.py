@@ -6,6 +6,7 @@ be thrown away at any time: ``state`` keeps what it is made from.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import count
 from typing import Any
@@ -185,6 +186,16 @@ class Session:
         self._begin_at(positions)
         self.rest = None if rest is None else rest.numbers
         self.measurement = measure(self.net, positions) if rest is None else rest.measurement
+
+    def keep_shape(self) -> Callable[[], None]:
+        """What is returned puts the paper back to how it is now, bit for bit."""
+        frame, numbers, positions, measurement = self.frame, self.rest, self.positions, self.measurement
+
+        def put_back() -> None:
+            self.move_to(positions, None if numbers is None else Rest(numbers, positions, measurement))
+            self.frame = frame
+
+        return put_back
 
     def lay_flat(self) -> None:
         """Puts the flat sheet in place of the shape."""

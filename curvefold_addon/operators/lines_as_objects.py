@@ -44,7 +44,7 @@ class RulingsAsAttribute(OnPaper, bpy.types.Operator):
             return self.refuse("Leave Edit Mode before its rulings are written")
         has_some = live.mark_rulings(paper)
         plane = "" if has_some else "; it is 0 now, since the paper is plane"
-        self.report({"INFO"}, f"{paper.name} has the attribute \"ruling\"{plane}")
+        self.report({"INFO"}, f'{paper.name} has the attribute "ruling"{plane}')
         return {"FINISHED"}
 
 

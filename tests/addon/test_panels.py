@@ -167,7 +167,7 @@ def test_a_paper_says_how_it_stands_and_has_its_slider(panels, extension, paper)
     assert report.sentence in said
     assert f"Stretch {report.stretch_mean:.2%} mean" in said
     assert notes["properties"] == ["fold", "live"]
-    assert len(shown(panels)) == 11
+    assert len(shown(panels)) == 12
 
 
 def activate(item):
@@ -339,7 +339,8 @@ def test_rulings_and_gauss_image_are_offered_as_objects_or_it_says_why_there_are
     panels, extension, wording, paper
 ):
     settings = bpy.context.scene.curvefold
-    offered = ["curvefold.rulings_as_object", "curvefold.gauss_image_as_object"]
+    names = ("rulings_as_object", "gauss_image_as_object", "rulings_as_attribute")
+    offered = [f"curvefold.{name}" for name in names]
     assert drawn(panels.OverlaysPanel)["operators"] == offered
     settings.gauss_image = True
     assert said(drawn(panels.OverlaysPanel)) == ""
@@ -488,3 +489,8 @@ def test_a_paper_that_was_changed_by_hand_offers_both_ways_out(panels, paper, ex
     for operator in notes["operators"][:2]:
         label = getattr(bpy.ops.curvefold, operator.partition(".")[2]).get_rna_type().name
         assert label in said(notes)
+
+
+def test_a_picture_is_offered(panels, paper):
+    offered = ["set_up_picture", "remove_picture", "animate_picture"]
+    assert drawn(panels.PicturePanel)["operators"] == [f"curvefold.{name}" for name in offered]
