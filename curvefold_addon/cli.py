@@ -47,8 +47,8 @@ def fold_parser(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
     command_line.add_fold_arguments(parser)
     parser.add_argument("--render", metavar="PNG", type=_path_ending(".png"), help="render a picture in Cycles")
     parser.add_argument("--blend", metavar="FILE", type=_path_ending(".blend"), help="save the scene")
-    parser.add_argument("--size", metavar="WxH", type=_size, default=(960, 720), help="pixels (960x720)")
-    parser.add_argument("--samples", type=_positive, default=48, help="Cycles samples per pixel (48)")
+    parser.add_argument("--size", metavar="WxH", type=_size, default=(1600, 1000), help="pixels (1600x1000)")
+    parser.add_argument("--samples", type=_positive, default=24, help="Cycles samples per pixel (24)")
     parser.add_argument("--threads", type=_not_negative, default=0, help="render threads (0: every core)")
     return parser
 
@@ -168,7 +168,7 @@ def _not_negative(text: str) -> int:
 def _size(text: str) -> tuple[int, int]:
     match = re.fullmatch(r"([1-9]\d{0,4})x([1-9]\d{0,4})", text)
     if match is None:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a size such as 960x720")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size such as 1600x1000")
     return int(match[1]), int(match[2])
 
 

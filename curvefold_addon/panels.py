@@ -327,6 +327,7 @@ class OverlaysPanel(Tab, bpy.types.Panel):
         column = self.layout.column(align=True)
         column.operator("curvefold.rulings_as_object", icon="OUTLINER_OB_CURVE")
         column.operator("curvefold.gauss_image_as_object", icon="OUTLINER_OB_CURVE")
+        column.operator("curvefold.rulings_as_attribute", icon="SPREADSHEET")
 
 
 class AnimationPanel(PaperPanel, bpy.types.Panel):
@@ -344,6 +345,19 @@ class AnimationPanel(PaperPanel, bpy.types.Panel):
             column.operator("curvefold.free_bake", icon="TRASH")
         else:
             column.operator("curvefold.bake", icon="SHAPEKEY_DATA")
+
+
+class PicturePanel(PaperPanel, bpy.types.Panel):
+    """A picture or a film of the paper"""
+
+    bl_idname = "CURVEFOLD_PT_picture"
+    bl_label = "Picture"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.layout.column(align=True)
+        column.operator("curvefold.set_up_picture", icon="OUTLINER_OB_CAMERA")
+        column.operator("curvefold.remove_picture", icon="TRASH")
+        column.operator_menu_enum("curvefold.animate_picture", "kind", text="Animate", icon="RENDER_ANIMATION")
 
 
 class AdvancedPanel(PaperPanel, bpy.types.Panel):
@@ -388,6 +402,7 @@ _CLASSES = (
     NotesPanel,
     OverlaysPanel,
     AnimationPanel,
+    PicturePanel,
     AdvancedPanel,
     WeightsPanel,
 )

@@ -1,5 +1,6 @@
-"""A small photo studio around a folded sheet, and the Cycles settings to take its picture."""
+"""A small photo studio around folded sheets: floor, warm light, a camera, and the settings to take the picture."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import cos, pi, radians, sin
 
@@ -9,20 +10,30 @@ from mathutils import Vector
 from .bridge import framing, pose
 from .node_tree import node_tree
 
+#: The collection of all that belongs to the studio. Its objects are known by their roles, whatever they are called.
+COLLECTION = "Curvefold Picture"
+ROLE = "curvefold_role"
+
 #: How high the camera may stand, seen from the paper; which, and from which side, is chosen for each fold.
 CAMERA_ELEVATIONS = (radians(34.0), radians(22.0), radians(46.0))
-CAMERA_LENS_MM = 70.0
+CAMERA_LENS_MM = 85.0
 #: Empty border around the paper, relative to its size.
-FRAME_MARGIN = 0.12
+FRAME_MARGIN = 0.18
 
-GROUND_COLOR = (0.30, 0.33, 0.36, 1.0)
+#: Scene-linear.
+GROUND_COLOR = (0.46, 0.33, 0.23, 1.0)
 #: The ground reaches beyond anything the camera can see.
-GROUND_RADII = 60.0
+GROUND_RADII = 80.0
 
-WORLD_COLOR = (0.80, 0.88, 1.0, 1.0)
-WORLD_STRENGTH = 0.45
+WORLD_COLOR = (1.0, 0.95, 0.90, 1.0)
+WORLD_STRENGTH = 0.5
 
-LOOKS = ("AgX - Medium High Contrast", "Medium High Contrast", "None")
+#: View transform and look, the best that a Blender has: whites that stay white, colours that stay warm.
+VIEWS = (("Khronos PBR Neutral", "None"), ("AgX", "AgX - Medium High Contrast"), ("Standard", "None"))
+
+CYCLES = "CYCLES"
+#: EEVEE's name from 5.0 on, and before.
+EEVEE = ("BLENDER_EEVEE", "BLENDER_EEVEE_NEXT")
 
 
 @dataclass(frozen=True)
@@ -43,36 +54,78 @@ class Lamp:
 
 
 LAMPS = (
-    Lamp("Key", radians(-122.0), radians(40.0), 4.0, 1.5, 6.0, (1.0, 0.95, 0.88)),
-    Lamp("Fill", radians(45.0), radians(30.0), 5.0, 4.0, 0.6, (0.86, 0.92, 1.0)),
+    # Low from the side: it shows the grain, and its size makes shadows that are crisp near the paper only.
+    Lamp("Key", radians(-78.0), radians(33.0), 6.0, 0.6, 3.7, (1.0, 0.90, 0.76)),
 )
+
+STUDIO = pose.Studio(CAMERA_ELEVATIONS, LAMPS[0].azimuth, LAMPS[0].elevation)
 
 
 @dataclass(frozen=True)
 class PictureSettings:
     """How a picture is rendered. ``threads`` 0 takes every core."""
 
-    width: int = 960
-    height: int = 720
-    samples: int = 48
+    width: int = 1600
+    height: int = 1000
+    samples: int = 24
     threads: int = 0
 
 
 def set_up(paper: bpy.types.Object, settings: PictureSettings) -> None:
     """Lays the paper on the ground of the current scene, lights it, and points a camera at it."""
     scene = bpy.context.scene
-    key = LAMPS[0]
-    view = pose.lie_down(paper, pose.Studio(CAMERA_ELEVATIONS, key.azimuth, key.elevation))
+    view = pose.lie_down(paper, STUDIO)
     bpy.context.view_layer.update()
-    extent = framing.extent(paper)
-    centre = Vector(extent.centre)
+    motion = framing.Motion()
+    motion.add(paper, bpy.context.evaluated_depsgraph_get())
 
-    _render_settings(scene, settings)
+    _output_settings(scene, settings)
+    cycles_settings(scene, settings.samples)
+    color_settings(scene)
+    build(scene, home_of(scene), view, motion.points)
+
+
+def build(
+    scene: bpy.types.Scene, home: bpy.types.Collection, view: pose.View, points: framing.Array, turns: bool = False
+) -> None:
+    """Floor, lights, world and camera around points (N,3) in the world; what is there already is set anew.
+
+    turns: whether the camera is to hold them from all sides
+    """
+    extent = framing.extent(points)
+    centre = Vector(extent.centre)
     _world(scene)
-    _ground(scene, extent.radius)
+    _ground(home, extent)
     for lamp in LAMPS:
-        _area_light(scene, lamp, view.azimuth, centre, extent.radius)
-    _camera(scene, paper, view, centre, extent.radius)
+        _area_light(home, lamp, view.azimuth, centre, extent.radius)
+    _camera(scene, home, view, framing.turned_round(points) if turns else points)
+
+
+def home_of(scene: bpy.types.Scene) -> bpy.types.Collection:
+    """The studio's collection in a scene, made when it is missing."""
+    home = find_home(scene)
+    if home is None:
+        home = bpy.data.collections.new(COLLECTION)
+        home[ROLE] = COLLECTION
+        scene.collection.children.link(home)
+    return home
+
+
+def find_home(scene: bpy.types.Scene) -> bpy.types.Collection | None:
+    """The studio's collection in a scene; None where there is none."""
+    return next((found for found in scene.collection.children_recursive if ROLE in found), None)
+
+
+def item_of(
+    home: bpy.types.Collection, role: str, make: Callable[[str], bpy.types.ID | None] | None = None
+) -> bpy.types.Object | None:
+    """The studio's object of a role. Where it is missing it is made, with the data that ``make`` makes."""
+    found = next((item for item in home.objects if item.get(ROLE) == role), None)
+    if found is None and make is not None:
+        found = bpy.data.objects.new(role, make(role))
+        found[ROLE] = role
+        home.objects.link(found)
+    return found
 
 
 def render(path: str) -> None:
@@ -86,9 +139,55 @@ def render(path: str) -> None:
         scene.render.filepath = before
 
 
-def _render_settings(scene: bpy.types.Scene, settings: PictureSettings) -> None:
+def use_eevee(scene: bpy.types.Scene) -> None:
+    """Renders with EEVEE, whatever this Blender calls it."""
+    for name in EEVEE:
+        try:
+            scene.render.engine = name
+        except TypeError:
+            continue
+        return
+
+
+def cycles_settings(scene: bpy.types.Scene, samples: int) -> None:
+    """Renders with Cycles: few samples, denoised with the grain of the paper left in."""
+    scene.render.engine = CYCLES
+    cycles = scene.cycles
+    cycles.samples = samples
+    cycles.use_adaptive_sampling = True
+    cycles.adaptive_threshold = 0.02
+    cycles.max_bounces = 4
+    cycles.use_denoising = True
+    try:
+        cycles.denoiser = "OPENIMAGEDENOISE"
+        cycles.denoising_input_passes = "RGB_ALBEDO_NORMAL"
+        cycles.denoising_prefilter = "ACCURATE"
+    except TypeError:  # this Blender was built without it
+        cycles.use_denoising = False
+
+
+def eevee_settings(scene: bpy.types.Scene, samples: int) -> None:
+    """Renders with EEVEE, with light that bounces off the paper."""
+    use_eevee(scene)
+    scene.eevee.taa_render_samples = samples
+    scene.eevee.use_raytracing = True
+
+
+def color_settings(scene: bpy.types.Scene) -> None:
+    """The view transform and look of the picture."""
+    settings = scene.view_settings
+    for transform, look in VIEWS:
+        try:
+            settings.view_transform = transform
+            settings.look = look
+        except TypeError:  # another version has others
+            continue
+        break
+    settings.exposure, settings.gamma = 0.0, 1.0
+
+
+def _output_settings(scene: bpy.types.Scene, settings: PictureSettings) -> None:
     render = scene.render
-    render.engine = "CYCLES"
     render.resolution_x = settings.width
     render.resolution_y = settings.height
     render.resolution_percentage = 100
@@ -99,29 +198,15 @@ def _render_settings(scene: bpy.types.Scene, settings: PictureSettings) -> None:
     if settings.threads > 0:
         render.threads_mode = "FIXED"
         render.threads = settings.threads
-    cycles = scene.cycles
-    cycles.device = "CPU"
-    cycles.samples = settings.samples
-    cycles.use_adaptive_sampling = True
-    cycles.adaptive_threshold = 0.04
-    cycles.max_bounces = 4
-    cycles.seed = 0
-    cycles.use_denoising = True
-    try:
-        cycles.denoiser = "OPENIMAGEDENOISE"
-    except TypeError:  # this Blender was built without it
-        cycles.use_denoising = False
-    scene.view_settings.view_transform = "AgX"
-    for look in LOOKS:
-        try:
-            scene.view_settings.look = look
-            break
-        except TypeError:  # the name of this look in another version
-            continue
+    scene.cycles.device = "CPU"
+    scene.cycles.seed = 0
 
 
 def _world(scene: bpy.types.Scene) -> None:
-    world = bpy.data.worlds.new("Studio")
+    world = next((found for found in bpy.data.worlds if found.get(ROLE) == COLLECTION), None)
+    if world is None:
+        world = bpy.data.worlds.new("Studio")
+        world[ROLE] = COLLECTION
     tree = node_tree(world)
     tree.nodes.clear()
     background = tree.nodes.new("ShaderNodeBackground")
@@ -132,57 +217,60 @@ def _world(scene: bpy.types.Scene) -> None:
     scene.world = world
 
 
-def _ground(scene: bpy.types.Scene, radius: float) -> None:
-    half = GROUND_RADII * radius
-    mesh = bpy.data.meshes.new("Ground")
-    corners = [(-half, -half, 0.0), (half, -half, 0.0), (half, half, 0.0), (-half, half, 0.0)]
+def _ground(home: bpy.types.Collection, extent: framing.Extent) -> None:
+    ground = item_of(home, "Floor", _floor_mesh)
+    half = GROUND_RADII * extent.radius
+    ground.scale = (half, half, 1.0)
+    # A hair below the paper, which may be flat.
+    ground.location = (extent.centre[0], extent.centre[1], extent.floor - 2e-4 * extent.radius)
+
+
+def _floor_mesh(name: str) -> bpy.types.Mesh:
+    mesh = bpy.data.meshes.new(name)
+    corners = [(-1.0, -1.0, 0.0), (1.0, -1.0, 0.0), (1.0, 1.0, 0.0), (-1.0, 1.0, 0.0)]
     mesh.from_pydata(corners, [], [(0, 1, 2, 3)])
-    material = bpy.data.materials.new("Ground")
+    material = bpy.data.materials.new(name)
+    material.diffuse_color = GROUND_COLOR
     shader = node_tree(material).nodes["Principled BSDF"]
     shader.inputs["Base Color"].default_value = GROUND_COLOR
-    shader.inputs["Roughness"].default_value = 1.0
-    shader.inputs["Specular IOR Level"].default_value = 0.0
+    shader.inputs["Roughness"].default_value = 0.9
+    shader.inputs["Specular IOR Level"].default_value = 0.1
     mesh.materials.append(material)
-    ground = bpy.data.objects.new("Ground", mesh)
-    # A hair below the paper, which lies on z = 0 and may be flat.
-    ground.location.z = -2e-4 * radius
-    scene.collection.objects.link(ground)
+    return mesh
 
 
-def _area_light(scene: bpy.types.Scene, lamp: Lamp, azimuth: float, centre: Vector, radius: float) -> None:
-    light = bpy.data.lights.new(lamp.name, "AREA")
+def _area_light(home: bpy.types.Collection, lamp: Lamp, azimuth: float, centre: Vector, radius: float) -> None:
+    item = item_of(home, lamp.name, lambda name: bpy.data.lights.new(name, "AREA"))
+    light = item.data
     light.shape = "DISK"
     light.size = lamp.size * radius
     light.color = lamp.color
     distance = lamp.distance * radius
     # A disk of power P gives P / (pi d²) straight ahead at distance d.
     light.energy = lamp.irradiance * pi * distance**2
-    direction = _direction(azimuth + lamp.azimuth, lamp.elevation)
-    light_object = bpy.data.objects.new(lamp.name, light)
-    light_object.location = centre + direction * distance
-    light_object.rotation_euler = direction.to_track_quat("Z", "Y").to_euler()
-    scene.collection.objects.link(light_object)
+    _place(item, centre, _direction(azimuth + lamp.azimuth, lamp.elevation), distance)
 
 
-def _camera(
-    scene: bpy.types.Scene, paper: bpy.types.Object, view: pose.View, centre: Vector, radius: float
-) -> None:
-    camera = bpy.data.cameras.new("Camera")
+def _camera(scene: bpy.types.Scene, home: bpy.types.Collection, view: pose.View, points: framing.Array) -> None:
+    item = item_of(home, "Camera", bpy.data.cameras.new)
+    camera = item.data
     camera.lens = CAMERA_LENS_MM
-    camera_object = bpy.data.objects.new("Camera", camera)
+    extent = framing.extent(points)
+    centre = Vector(extent.centre)
     direction = _direction(view.azimuth, view.elevation)
-    camera_object.location = centre + direction * 10.0 * radius
-    camera_object.rotation_euler = direction.to_track_quat("Z", "Y").to_euler()
-    scene.collection.objects.link(camera_object)
-    scene.camera = camera_object
+    _place(item, centre, direction, 10.0 * extent.radius)
+    scene.camera = item
     bpy.context.view_layer.update()
 
-    coordinates = framing.outline_coordinates(paper, FRAME_MARGIN)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    camera_object.location = camera_object.camera_fit_coords(depsgraph, coordinates)[0]
-    distance = (camera_object.location - centre).length
-    camera.clip_start = 0.01 * distance
-    camera.clip_end = 10.0 * GROUND_RADII * radius
+    item.location = item.camera_fit_coords(depsgraph, framing.grown(points, FRAME_MARGIN))[0]
+    camera.clip_start = 0.01 * (item.location - centre).length
+    camera.clip_end = 10.0 * GROUND_RADII * extent.radius
+
+
+def _place(item: bpy.types.Object, centre: Vector, direction: Vector, distance: float) -> None:
+    item.location = centre + direction * distance
+    item.rotation_euler = direction.to_track_quat("Z", "Y").to_euler()
 
 
 def _direction(azimuth: float, elevation: float) -> Vector:

@@ -35,7 +35,7 @@ def store_keys(paper: Any, shapes: Sequence[NDArray[np.float32]], first_frame: i
     for frame, time in ends:
         keys.eval_time = time
         keys.keyframe_insert("eval_time", frame=frame)
-    for curve in _curves(keys):
+    for curve in curves_of(keys):
         for point in curve.keyframe_points:
             point.interpolation = "LINEAR"
 
@@ -57,10 +57,14 @@ def remove_keys(paper: Any) -> None:
     paper.shape_key_clear()
 
 
-def _curves(keys: Any) -> list[Any]:
-    action = keys.animation_data.action
+def curves_of(owner: Any) -> list[Any]:
+    """The animation curves of a datablock."""
+    data = owner.animation_data
+    action = None if data is None else data.action
+    if action is None:
+        return []
     if hasattr(action, "layers") and action.layers:
         # Actions in layers, from Blender 4.4 on; the flat list is gone from 5.0 on.
-        slot = keys.animation_data.action_slot
-        return list(action.layers[0].strips[0].channelbag(slot).fcurves)
-    return list(action.fcurves)
+        bag = action.layers[0].strips[0].channelbag(data.action_slot)
+        return [] if bag is None else list(bag.fcurves)
+    return list(getattr(action, "fcurves", ()))

@@ -1,4 +1,7 @@
-"""A folded sheet as a Blender mesh: quads and n-gons, the flat sheet as UVs, creases marked."""
+"""A folded sheet as a Blender mesh: quads and n-gons, the flat sheet as UVs, creases marked.
+
+What is marked here belongs to the net; what belongs to its shape is in ``mesh_attributes``.
+"""
 
 from __future__ import annotations
 
@@ -16,16 +19,27 @@ if TYPE_CHECKING:
 
 #: The UV map that holds the flat sheet in metres.
 FLAT_UV = "flat"
+#: The UV map in which the sheet's box is 0 to 1 both ways: an image fills the sheet. New papers are textured by it.
+PRINT_UV = "print"
 #: Face attribute: the patch (a piece of the sheet between creases) a face belongs to.
 PATCH = "patch"
 #: Edge attribute: the crease an edge lies on, NO_CREASE elsewhere.
 CREASE = "crease"
 #: Edge attribute: whether an edge lies on a crease.
-CREASE_EDGE = "crease_edge"
+ON_CREASE = "on_crease"
 NO_CREASE = -1
-#: Blender's own attribute of that meaning.
+#: Blender's own attributes: how sharp an edge, or a vertex, stays under Subdivision (0 to 1), ...
+CREASE_EDGE, _CREASE_VERTEX = "crease_edge", "crease_vert"
+#: ... and whether shading breaks there.
 _SHARP_EDGE = "sharp_edge"
-_OURS = frozenset({FLAT_UV, PATCH, CREASE, CREASE_EDGE, _SHARP_EDGE})
+#: Attributes of the net's shape, see ``mesh_attributes``.
+FOLD_ANGLE, ASSIGNMENT, STRETCH, RULING = "fold_angle", "assignment", "stretch", "ruling"
+SHAPE_ATTRIBUTES = (FOLD_ANGLE, ASSIGNMENT, STRETCH, RULING)
+_OURS = frozenset(
+    {FLAT_UV, PRINT_UV, PATCH, CREASE, ON_CREASE, CREASE_EDGE, _CREASE_VERTEX, _SHARP_EDGE, *SHAPE_ATTRIBUTES}
+)
+#: Where a border or a crease turns by more than this, Subdivision keeps the corner, degrees.
+_CORNER = 30.0
 
 #: A drawing that does not say how large it is, is taken to be in millimetres.
 DEFAULT_UNIT_MM = 1.0
@@ -64,6 +78,8 @@ def fill(mesh: Any, surface: RenderMap, positions: NDArray[np.float64]) -> None:
     What users have put on the old geometry is carried over by its place on the flat sheet (``mesh_layers``).
     """
     theirs = mesh_layers.read(mesh, FLAT_UV, PATCH, _OURS)
+    with_rulings = RULING in mesh.attributes
+    chosen = mesh_layers.chosen_maps(mesh)
     mesh.clear_geometry()
     corners = np.asarray(surface.face_vertices, dtype=np.int32)
     starts = np.asarray(surface.face_start[:-1], dtype=np.int32)
@@ -80,18 +96,28 @@ def fill(mesh: Any, surface: RenderMap, positions: NDArray[np.float64]) -> None:
     mark(mesh, surface)
     if theirs is not None:
         mesh_layers.write(mesh, FLAT_UV, theirs)
+    if chosen is not None:
+        mesh_layers.choose_maps(mesh, chosen)
+    if with_rulings:
+        attribute(mesh, RULING, "FLOAT_VECTOR", "FACE")  # they are asked for; what they are is found later
     mesh.update()
     by_hand.note(mesh)
 
 
 def mark(mesh: Any, surface: RenderMap) -> None:
     """Gives a mesh with the geometry of a net the flat sheet as its UVs, and its patches and creases."""
-    # By their names: a new layer moves the others.
-    if FLAT_UV not in mesh.uv_layers:
-        mesh.uv_layers.new(name=FLAT_UV)
-    mesh.uv_layers[FLAT_UV].uv.foreach_set("vector", _single(surface.uv[np.asarray(surface.face_vertices)]))
-    _attribute(mesh, PATCH, "INT", "FACE").data.foreach_set("value", np.asarray(surface.face_patch, dtype=np.int32))
-    _mark_creases(mesh, surface.crease_edges, surface.crease_edge_crease)
+    corners = surface.uv[np.asarray(surface.face_vertices)]
+    low, size = surface.uv.min(axis=0), np.ptp(surface.uv, axis=0)
+    # A new map may become the active one, and takes the place of none that the user has chosen.
+    chosen = mesh_layers.chosen_maps(mesh)
+    for name, values in ((FLAT_UV, corners), (PRINT_UV, (corners - low) / size)):
+        # By their names: a new layer moves the others.
+        if name not in mesh.uv_layers:
+            mesh.uv_layers.new(name=name)
+        mesh.uv_layers[name].uv.foreach_set("vector", _single(values))
+    mesh_layers.choose_maps(mesh, chosen or (PRINT_UV, PRINT_UV))
+    attribute(mesh, PATCH, "INT", "FACE").data.foreach_set("value", np.asarray(surface.face_patch, dtype=np.int32))
+    _mark_edges(mesh, surface)
     mesh.update()
 
 
@@ -112,8 +138,13 @@ def has_geometry_of(mesh: Any, surface: RenderMap) -> bool:
 
 
 def is_marked(mesh: Any) -> bool:
-    """Whether a mesh still has the marks that ``mark`` gave it: nobody has taken one away."""
-    return FLAT_UV in mesh.uv_layers and all(name in mesh.attributes for name in (PATCH, CREASE, CREASE_EDGE))
+    """Whether a mesh still has the marks that ``mark`` gives it: nobody has taken one away, and no earlier version
+    made them (``crease_edge`` was the flag that is ``on_crease`` now).
+    """
+    maps, attributes = mesh.uv_layers, mesh.attributes
+    if FLAT_UV not in maps or PRINT_UV not in maps:
+        return False
+    return all(name in attributes for name in (PATCH, CREASE, ON_CREASE)) and not _has_old_flag(mesh)
 
 
 def can_be_marked(mesh: Any, surface: RenderMap) -> bool:
@@ -147,37 +178,76 @@ def world_positions(paper: Any) -> NDArray[np.float64]:
     return world
 
 
-def _mark_creases(mesh: Any, crease_edges: NDArray[np.int64], creases: NDArray[np.int64]) -> None:
+def edges_of(mesh: Any, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
+    """(n,) the edges of a mesh between pairs (n,2) of its vertices. Raises ValueError where there is none."""
     count = len(mesh.edges)
-    ends = np.empty(2 * count, dtype=np.int32)
-    mesh.edges.foreach_get("vertices", ends)
-    keys = _edge_keys(ends.reshape(-1, 2), len(mesh.vertices))
-    wanted = _edge_keys(np.asarray(crease_edges).reshape(-1, 2), len(mesh.vertices))
+    keys = _edge_keys(_edge_ends(mesh), len(mesh.vertices))
+    wanted = _edge_keys(np.asarray(pairs).reshape(-1, 2), len(mesh.vertices))
     order = np.argsort(keys)
     slot = np.searchsorted(keys, wanted, sorter=order)
     found = slot < count
     found[found] = keys[order[slot[found]]] == wanted[found]
     if not found.all():
         raise ValueError(f"{np.count_nonzero(~found)} crease edges of the surface are not edges of its faces")
-    edges = order[slot]
-
-    number = np.full(count, NO_CREASE, dtype=np.int32)
-    number[edges] = creases
-    on_crease = np.zeros(count, dtype=bool)
-    on_crease[edges] = True
-    _attribute(mesh, CREASE, "INT", "EDGE").data.foreach_set("value", number)
-    # Everything is shaded smooth but the creases. Blender reads the second; the first one is ours to keep.
-    for name in (CREASE_EDGE, _SHARP_EDGE):
-        _attribute(mesh, name, "BOOLEAN", "EDGE").data.foreach_set("value", on_crease)
+    edges: NDArray[np.int64] = order[slot]
+    return edges
 
 
-def _attribute(mesh: Any, name: str, data_type: str, domain: str) -> Any:
+def attribute(mesh: Any, name: str, data_type: str, domain: str) -> Any:
     """An attribute of that kind, made when it is missing. One of another kind is the user's: it makes room."""
     found = mesh.attributes.get(name)
     if found is not None and (found.data_type, found.domain) != (data_type, domain):
         found.name = f"{name}.user"
         found = None
     return found or mesh.attributes.new(name, data_type, domain)
+
+
+def _mark_edges(mesh: Any, surface: RenderMap) -> None:
+    """Creases with their numbers; what is sharp in shading; what stays under Subdivision, the border too."""
+    edges = edges_of(mesh, surface.crease_edges)
+    number = np.full(len(mesh.edges), NO_CREASE, dtype=np.int32)
+    number[edges] = surface.crease_edge_crease
+    on_crease = np.zeros(len(mesh.edges), dtype=bool)
+    on_crease[edges] = True
+    faces = np.empty(len(mesh.loops), dtype=np.int32)
+    mesh.loops.foreach_get("edge_index", faces)
+    kept = on_crease | (np.bincount(faces, minlength=len(mesh.edges)) == 1)
+    if _has_old_flag(mesh):
+        mesh.attributes.remove(mesh.attributes[CREASE_EDGE])
+    attribute(mesh, CREASE, "INT", "EDGE").data.foreach_set("value", number)
+    attribute(mesh, ON_CREASE, "BOOLEAN", "EDGE").data.foreach_set("value", on_crease)
+    # A border has no other side to be shaded with, but paper with a thickness has an edge there.
+    attribute(mesh, _SHARP_EDGE, "BOOLEAN", "EDGE").data.foreach_set("value", kept)
+    attribute(mesh, CREASE_EDGE, "FLOAT", "EDGE").data.foreach_set("value", kept.astype(np.float32))
+    corner = _corners(_edge_ends(mesh)[kept], surface.uv)
+    attribute(mesh, _CREASE_VERTEX, "FLOAT", "POINT").data.foreach_set("value", corner.astype(np.float32))
+
+
+def _corners(lines: NDArray[np.int32], flat: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """(R,) whether a line, one of edges (n,2), turns at a vertex flat (R,2) by more than ``_CORNER``; where more
+    than two meet, Subdivision keeps the vertex by itself.
+    """
+    step = flat[lines[:, 1]] - flat[lines[:, 0]]
+    step /= np.maximum(np.linalg.norm(step, axis=1), 1e-300)[:, None]
+    away = np.zeros_like(flat)
+    np.add.at(away, lines[:, 0], step)
+    np.subtract.at(away, lines[:, 1], step)
+    straight = 2.0 * np.sin(np.radians(_CORNER) / 2.0)
+    corner: NDArray[np.bool_] = np.bincount(lines.ravel(), minlength=len(flat)) == 2
+    return corner & (np.linalg.norm(away, axis=1) > straight)
+
+
+def _has_old_flag(mesh: Any) -> bool:
+    """Whether a version before wrote the flag of creases under the name of Blender's own attribute."""
+    found = mesh.attributes.get(CREASE_EDGE)
+    return found is not None and found.data_type == "BOOLEAN"
+
+
+def _edge_ends(mesh: Any) -> NDArray[np.int32]:
+    """(E,2) vertices of the edges."""
+    ends = np.empty(2 * len(mesh.edges), dtype=np.int32)
+    mesh.edges.foreach_get("vertices", ends)
+    return ends.reshape(-1, 2)
 
 
 def _edge_keys(ends: NDArray[Any], vertices: int) -> NDArray[np.int64]:

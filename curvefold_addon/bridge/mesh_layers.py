@@ -69,8 +69,6 @@ class Layers:
     values: tuple[_Values, ...]
     groups: tuple[_Group, ...]
     active_group: int
-    uv_shown: str
-    uv_rendered: str
     color_shown: str
     color_rendered: str
     sheet: _Sheet
@@ -131,8 +129,6 @@ def read(mesh: Any, flat_uv: str, patch: str, ours: frozenset[str]) -> Layers | 
         values,
         groups,
         0 if owner is None else owner.vertex_groups.active_index,
-        mesh.uv_layers.active.name,
-        next(layer.name for layer in mesh.uv_layers if layer.active_render),
         mesh.attributes.active_color_name,
         mesh.attributes.default_color_name,
         sheet,
@@ -171,6 +167,22 @@ def write(mesh: Any, flat_uv: str, layers: Layers) -> None:
     if layers.groups:
         _write_groups(mesh, layers, places["POINT"])
     _write_choices(mesh, layers)
+
+
+def chosen_maps(mesh: Any) -> tuple[str, str] | None:
+    """Which UV map is shown and which is rendered; None where there is none."""
+    if not len(mesh.uv_layers):
+        return None
+    return mesh.uv_layers.active.name, next(layer.name for layer in mesh.uv_layers if layer.active_render)
+
+
+def choose_maps(mesh: Any, chosen: tuple[str, str]) -> None:
+    """Shows and renders these UV maps, as far as they are there."""
+    shown, rendered = (mesh.uv_layers.get(name) for name in chosen)
+    if shown is not None:
+        mesh.uv_layers.active = shown
+    if rendered is not None:
+        rendered.active_render = True
 
 
 class _Place:
@@ -249,11 +261,7 @@ def _write_groups(mesh: Any, layers: Layers, place: _Place) -> None:
 
 
 def _write_choices(mesh: Any, layers: Layers) -> None:
-    """Which of several maps and colours are shown and rendered."""
-    if layers.uv_shown in mesh.uv_layers:
-        mesh.uv_layers.active = mesh.uv_layers[layers.uv_shown]
-    if layers.uv_rendered in mesh.uv_layers:
-        mesh.uv_layers[layers.uv_rendered].active_render = True
+    """Which of several colours are shown and rendered."""
     mesh.attributes.active_color_name = layers.color_shown
     mesh.attributes.default_color_name = layers.color_rendered
 

@@ -93,7 +93,7 @@ class PaperShape:
         """The creases, coloured by the side that they folded to."""
         if "creases" not in self._done:
             surface = self.net.render_map
-            sides = np.append(sides_found(self.measurement), 0)[_edge_points(self.net)]
+            sides = np.append(sides_found(self.measurement), 0)[edge_points(self.net)]
             points = self.shown[surface.crease_edges].reshape(-1, 3)
             self._done["creases"] = Lines(single(points), line_colors(sides))
         lines: Lines = self._done["creases"]
@@ -109,10 +109,7 @@ class PaperShape:
     def stretch(self, triangles: Indices) -> Surface:
         """How far the paper is stretched. triangles (T,3) of the mesh that shows it."""
         if "stretch" not in self._done:
-            edges, count = self.net.edges.ravel(), len(self.net.rest)
-            total = np.bincount(edges, weights=self.measurement.stretch.repeat(2), minlength=count)
-            mean = total / np.maximum(np.bincount(edges, minlength=count), 1)
-            colors = stretch_colors(self.net.render_map.apply(mean))
+            colors = stretch_colors(self.net.render_map.apply(vertex_stretch(self.net, self.measurement)))
             self._done["stretch"] = Surface(single(self.shown), colors, triangles)
         surface: Surface = self._done["stretch"]
         return surface
@@ -227,6 +224,14 @@ def sides_found(m: Measurement) -> NDArray[np.int64]:
     return np.where(folded, m.fold_sign, 0)
 
 
+def vertex_stretch(net: PiecewiseDog, m: Measurement) -> Array:
+    """(V,) mean unsigned relative stretch of the edges at each vertex of a net."""
+    edges, count = net.edges.ravel(), len(net.rest)
+    total = np.bincount(edges, weights=m.stretch.repeat(2), minlength=count)
+    mean: Array = total / np.maximum(np.bincount(edges, minlength=count), 1)
+    return mean
+
+
 def side_color(side: int) -> Color:
     """Of a valley (+1), a mountain (-1), and what is not folded (0)."""
     return (MOUNTAIN, UNFOLDED, VALLEY)[side + 1]
@@ -285,7 +290,7 @@ class RulingFinder:
 
 
 @lru_cache(maxsize=4)
-def _edge_points(net: PiecewiseDog) -> NDArray[np.int64]:
+def edge_points(net: PiecewiseDog) -> NDArray[np.int64]:
     """(n,) the crease point that speaks for each shown crease edge; -1 on a chain without one."""
     surface, points = net.render_map, net.crease_points
     middle = surface.uv[surface.crease_edges].mean(axis=1)

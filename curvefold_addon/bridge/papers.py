@@ -11,7 +11,7 @@ from mathutils import Matrix  # type: ignore[import-not-found]
 
 from ...solver import Crease, CreasePattern, Handle, Status
 from ...solver.description import AUTO
-from . import by_hand, controls, drawing_objects, hooks, state
+from . import by_hand, controls, drawing_objects, hooks, mesh_attributes, state
 from . import mesh as surface
 from .curve_targets import target_points
 from .kept_controls import keep_controls
@@ -72,6 +72,7 @@ def keep(paper: Any, result: FoldResult) -> None:
     drawn = drawn_of(source)
     controls.match_creases(settings, drawn)
     keep_controls(paper, description.controls, description.weights, drawn, scale)
+    mesh_attributes.write_measured(mesh, result.net, result.measurement)
     if result.last.status is Status.SETTLED:
         state.store_rest(mesh, _told(paper, source).numbers())
 

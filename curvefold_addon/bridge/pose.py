@@ -23,13 +23,17 @@ _AZIMUTHS = 24
 #: Faces that stand for the whole sheet when a view is judged.
 _MOST_FACES = 500
 #: Width of a picture over its height, when a view is judged.
-_ASPECT = 4.0 / 3.0
+_ASPECT = 1.6
 
 #: What makes a good picture: paper fills the frame, both sides are seen (a share of the smaller one above the
 #: limit gains nothing more), light and shade differ, it is bright, and the sheet lies rather than stands,
 #: with the front up if it can.
-_FILLED, _BOTH_SIDES, _SHADING, _BRIGHT, _LYING, _FRONT_UP = 1.2, 8.0, 3.0, 0.3, 3.0, 0.6
-_ENOUGH_OF_A_SIDE = 0.2
+_FILLED, _BOTH_SIDES, _SHADING, _BRIGHT, _LYING, _FRONT_UP = 4.0, 8.0, 3.0, 1.0, 3.0, 0.6
+#: Faces that are seen at less than this (sine) are slivers, and what share of the seen ones costs.
+_SLIVER, _SLIVERS = 0.25, 3.0
+_ENOUGH_OF_A_SIDE = 0.12
+#: Better by less than this is not better: of equally good views the first is taken, on every machine.
+_HAIR = 1e-6
 
 Array = NDArray[np.float64]
 _DOWN = np.array([0.0, 0.0, -1.0])
@@ -58,25 +62,30 @@ def lie_down(paper: Any, studio: Studio) -> View:
     Every face of the convex hull that the sheet can stand on without falling over is tried, from all around.
     """
     points = _local_positions(paper.data)
-    sheet = _Sheet(paper.data, points)
-    views = [
-        View(k * 2.0 * np.pi / _AZIMUTHS, elevation)
-        for elevation in studio.camera_elevations
-        for k in range(_AZIMUTHS)
-    ]
-    best, best_score, best_view = np.eye(3), -np.inf, views[0]
+    sheet = Sheet(paper.data)
+    best, best_score, best_view = np.eye(3), -np.inf, View(0.0, studio.camera_elevations[0])
     for normal in resting_normals(points):
         turn = _down_to_ground(normal)
         front_up = float(normal @ _DOWN)
-        bonus = _LYING * abs(front_up) + _FRONT_UP * front_up
-        for view in views:
-            score = sheet.judge(turn, view, studio) + bonus
-            # Not by a hair: of equally good ones the first is taken, on every machine.
-            if score > best_score + 1e-6:
-                best, best_score, best_view = turn, score, view
+        view, score = best_view_of(sheet, turn, studio)
+        score += _LYING * abs(front_up) + _FRONT_UP * front_up
+        if score > best_score + _HAIR:
+            best, best_score, best_view = turn, score, view
     # A Matrix, because a plain list would be taken column by column.
     paper.matrix_world = Matrix(_onto_ground(points, best).tolist())
     return best_view
+
+
+def best_view_of(sheet: Sheet, turn: Array, studio: Studio) -> tuple[View, float]:
+    """From where a sheet turned by ``turn`` (3,3) looks best, and how good that is."""
+    best, best_score = View(0.0, studio.camera_elevations[0]), -np.inf
+    for elevation in studio.camera_elevations:
+        for k in range(_AZIMUTHS):
+            view = View(k * 2.0 * np.pi / _AZIMUTHS, elevation)
+            score = sheet.judge(turn, view, studio)
+            if score > best_score + _HAIR:
+                best, best_score = view, score
+    return best, best_score
 
 
 def resting_normals(points: Array) -> list[Array]:
@@ -99,10 +108,11 @@ def resting_normals(points: Array) -> list[Array]:
     return [normal for _, normal in found[:_MOST_POSES]] or [_DOWN]
 
 
-class _Sheet:
-    """The sheet's faces, thinned out, and what hides them."""
+class Sheet:
+    """A sheet's faces, thinned out, and what hides them: one shape of a mesh, whatever becomes of it."""
 
-    def __init__(self, mesh: Any, points: Array) -> None:
+    def __init__(self, mesh: Any) -> None:
+        points = _local_positions(mesh)
         count = len(mesh.polygons)
         normals = np.empty(3 * count, dtype=np.float32)
         middles = np.empty(3 * count, dtype=np.float32)
@@ -137,7 +147,8 @@ class _Sheet:
         contrast = float(np.sqrt(weights @ (lit - mean) ** 2 / total))
         sides = min(front / total, back / total, _ENOUGH_OF_A_SIDE)
         filled = total * self._area / self._frame(turn, camera)
-        return _FILLED * filled + _BOTH_SIDES * sides + _SHADING * contrast + _BRIGHT * mean
+        slivers = float(seen[np.abs(facing) < _SLIVER].sum() / seen.sum())
+        return -_SLIVERS * slivers + _FILLED * filled + _BOTH_SIDES * sides + _SHADING * contrast + _BRIGHT * mean
 
     def _frame(self, turn: Array, camera: View) -> float:
         """Area of the picture, of usual shape, that just holds the sheet."""

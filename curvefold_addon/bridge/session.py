@@ -6,7 +6,7 @@ be thrown away at any time: ``state`` keeps what it is made from.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from itertools import count
 from typing import Any
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ...solver import Handle, HandleError, Measurement, PiecewiseDog, SqpReport, Status, measure
 from ...solver.controls.pull import Finding
 from ...solver.net.carry_over import carry_over
-from . import by_hand, nets, state, worker
+from . import by_hand, mesh_attributes, nets, state, worker
 from . import mesh as surface
 from .hooks import SAME_TARGET, WIDTH, Inputs, handles_begin, same
 from .nets import choose, drawn_of, net_of
@@ -81,6 +81,7 @@ class Session:
     run          the name of the motion, in the .blend too; empty when it has none yet
     frame        the last frame of an animation that the paper has followed
     failed       whether the numbers ran away; the last good shape is kept
+    ruled        the version of the shape whose rulings the mesh has, when it is asked for them
     """
 
     def __init__(self, source: state.Source, net: PiecewiseDog, positions: Array, rest: Array | None) -> None:
@@ -93,6 +94,7 @@ class Session:
         self.run = ""
         self.origin = ""  # the run that this one began at the rest of
         self.version = next(_versions)
+        self.ruled = -1
         self.failed = False
         self.inputs: Inputs | None = None
         self.report: SqpReport | None = None
@@ -105,6 +107,7 @@ class Session:
         self._taken: Step | None = None
         self._counted = 0
         self._written = positions
+        self._marked: Measurement | None = None
         self._anew: Rest | None = None
         self._off_sheet: dict[tuple[float, float], str] = {}
 
@@ -198,6 +201,17 @@ class Session:
         self.measurement = measure(self.net, positions) if rest is None else rest.measurement
         self.judgement = None if rest is None else rest.judgement
 
+    def keep_shape(self) -> Callable[[], None]:
+        """What is returned puts the paper back to how it is now, bit for bit."""
+        frame, numbers, positions = self.frame, self.rest, self.positions
+        measurement, judgement = self.measurement, self.judgement
+
+        def put_back() -> None:
+            self.move_to(positions, None if numbers is None else Rest(numbers, positions, measurement, judgement))
+            self.frame = frame
+
+        return put_back
+
     def lay_flat(self) -> None:
         """Puts the flat sheet in place of the shape."""
         self.move_to(flat_positions(self.net), None)
@@ -253,6 +267,7 @@ class Session:
                 self.judgement = known.rest.judgement
             self.version = next(_versions)
         self._written = self.positions
+        self._marked = None
 
     def _leave_rest(self) -> None:
         if self.rest is None:
@@ -287,6 +302,9 @@ class Session:
     def write(self, mesh: Any) -> None:
         """Shows the present shape and keeps it on the datablock."""
         self._show(mesh)
+        if self._marked is not self.measurement or not mesh_attributes.is_measured(mesh):
+            mesh_attributes.write_measured(mesh, self.net, self.measurement)
+            self._marked = self.measurement
         if self.dirty:
             state.store_positions(mesh, self.positions)
             self._written = self.positions

@@ -6,6 +6,7 @@ from . import (
     add_joint,
     add_sample,
     add_sheet,
+    animate_picture,
     back_to_paper,
     bake,
     check_paper,
@@ -29,6 +30,7 @@ from . import (
     remove_handle,
     restore_paper,
     set_assignment,
+    set_up_picture,
     settle,
     sheet_from_object,
     stroke_crease,
@@ -69,6 +71,8 @@ _MODULES = (
     check_paper,
     bake,
     lines_as_objects,
+    set_up_picture,
+    animate_picture,
     follow,
 )
 

@@ -1,4 +1,4 @@
-"""Rulings and the Gauss image of a paper as it is now, as objects to keep."""
+"""Rulings and the Gauss image of a paper as it is now, as objects to keep; rulings on its faces."""
 
 from typing import ClassVar
 
@@ -28,6 +28,26 @@ class RulingsAsObject(OnPaper, bpy.types.Operator):
         return {"FINISHED"}
 
 
+class RulingsAsAttribute(OnPaper, bpy.types.Operator):
+    """Give each face the direction of its ruling, for shaders and Geometry Nodes: the attribute "ruling", which is
+    found again whenever the paper comes to rest, and at each frame of a film
+    """
+
+    bl_idname = "curvefold.rulings_as_attribute"
+    bl_label = "Rulings as Attribute"
+    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+
+    def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
+        if baking.is_baked(paper.data):
+            return self.refuse("The paper is baked; free its bake to find its rulings")
+        if paper.mode != "OBJECT":
+            return self.refuse("Leave Edit Mode before its rulings are written")
+        has_some = live.mark_rulings(paper)
+        plane = "" if has_some else "; it is 0 now, since the paper is plane"
+        self.report({"INFO"}, f'{paper.name} has the attribute "ruling"{plane}')
+        return {"FINISHED"}
+
+
 class GaussImageAsObject(OnPaper, bpy.types.Operator):
     """Keep the Gauss image of the paper as it is now: a curve object beside it, one material for each patch"""
 
@@ -48,9 +68,11 @@ class GaussImageAsObject(OnPaper, bpy.types.Operator):
 
 def register() -> None:
     bpy.utils.register_class(RulingsAsObject)
+    bpy.utils.register_class(RulingsAsAttribute)
     bpy.utils.register_class(GaussImageAsObject)
 
 
 def unregister() -> None:
     bpy.utils.unregister_class(GaussImageAsObject)
+    bpy.utils.unregister_class(RulingsAsAttribute)
     bpy.utils.unregister_class(RulingsAsObject)

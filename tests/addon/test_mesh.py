@@ -40,6 +40,19 @@ def test_uv_is_the_flat_sheet_in_metres(paper, folded):
     assert area == pytest.approx(0.01, rel=1e-5), "the faces cover the sheet once, counter-clockwise"
 
 
+def test_print_is_the_box_of_the_sheet(paper):
+    maps = paper.data.uv_layers
+    flat, printed = (np.array([loop.vector[:] for loop in maps[name].uv]) for name in ("flat", "print"))
+    assert (printed.min(axis=0), printed.max(axis=0)) == (pytest.approx([0, 0]), pytest.approx([1, 1]))
+    assert printed == pytest.approx(flat / 0.1, abs=1e-5), "the picture's lower left corner is the sheet's"
+
+
+def test_images_are_put_on_by_the_print_map(paper):
+    maps = paper.data.uv_layers
+    assert maps.active.name == "print"
+    assert [layer.name for layer in maps if layer.active_render] == ["print"]
+
+
 def test_creases_are_sharp_and_numbered(paper, folded):
     mesh = paper.data
     surface = folded.net.render_map
@@ -48,15 +61,49 @@ def test_creases_are_sharp_and_numbered(paper, folded):
         for edge, c in zip(surface.crease_edges, surface.crease_edge_crease, strict=True)
     }
     assert wanted
-    crease = mesh.attributes["crease"].data
-    marked = mesh.attributes["crease_edge"].data
-    sharp = mesh.attributes["sharp_edge"].data
+    border = borders(mesh)
+    assert border
     for edge in mesh.edges:
         number = wanted.get(frozenset(edge.vertices), -1)
-        assert crease[edge.index].value == number
-        assert marked[edge.index].value == (number >= 0)
-        assert sharp[edge.index].value == (number >= 0)
+        kept = number >= 0 or edge.index in border
+        assert mesh.attributes["crease"].data[edge.index].value == number
+        assert mesh.attributes["on_crease"].data[edge.index].value == (number >= 0)
+        assert mesh.attributes["crease_edge"].data[edge.index].value == float(kept)
+        assert mesh.attributes["sharp_edge"].data[edge.index].value == kept
     assert all(polygon.use_smooth for polygon in mesh.polygons)
+
+
+def borders(mesh):
+    """Edges with one face."""
+    count = np.bincount([loop.edge_index for loop in mesh.loops], minlength=len(mesh.edges))
+    return set(np.flatnonzero(count == 1).tolist())
+
+
+def test_subdivision_keeps_creases_border_and_corners(paper):
+    mesh = paper.data
+    modifier = paper.modifiers.new("Subdivision", "SUBSURF")
+    modifier.levels = 2
+
+    def moved():
+        """How far each vertex is moved, metres; the first of the fine ones are the coarse ones."""
+        shown = paper.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+        before = np.array([v.co[:] for v in mesh.vertices])
+        return np.linalg.norm(np.array([v.co[:] for v in shown.vertices])[: len(before)] - before, axis=1)
+
+    kept = {v for e in mesh.edges if mesh.attributes["crease_edge"].data[e.index].value for v in e.vertices}
+    inside = [v for v in range(len(mesh.vertices)) if v in kept]
+    flat = {loop.vertex_index: mesh.uv_layers["flat"].uv[loop.index].vector for loop in mesh.loops}
+    corners = [v for v, (x, y) in flat.items() if {round(x, 6), round(y, 6)} <= {0.0, 0.1}]
+    assert len(corners) == 4
+    with_them = moved()
+    assert with_them[corners].max() < 1e-6
+    assert with_them[inside].max() < 4e-4
+    for name in ("crease_edge", "crease_vert"):
+        mesh.attributes.remove(mesh.attributes[name])
+    mesh.update()
+    without = moved()
+    assert without[inside].max() > 3 * with_them[inside].max()
+    assert without[corners].min() > 5e-4
 
 
 def test_patches(paper, folded):
@@ -75,4 +122,4 @@ def test_crease_edges_off_the_faces_are_refused(extension, folded):
     module = extension("curvefold_addon.bridge.mesh")
     mesh = module.build_mesh(folded)
     with pytest.raises(ValueError, match="1 crease edges"):
-        module._mark_creases(mesh, np.array([[0, 0]]), np.array([0]))
+        module.edges_of(mesh, np.array([[0, 0]]))

@@ -368,7 +368,8 @@ def test_rulings_and_gauss_image_are_offered_as_objects_or_it_says_why_there_are
     panels, extension, wording, paper
 ):
     settings = bpy.context.scene.curvefold
-    offered = ["curvefold.rulings_as_object", "curvefold.gauss_image_as_object"]
+    names = ("rulings_as_object", "gauss_image_as_object", "rulings_as_attribute")
+    offered = [f"curvefold.{name}" for name in names]
     assert drawn(panels.OverlaysPanel)["operators"] == offered
     settings.gauss_image = True
     assert said(drawn(panels.OverlaysPanel)) == ""
@@ -611,3 +612,8 @@ def test_import_notes_can_be_read_again_at_the_sheet_and_at_its_paper(panels):
     assert drawn(panels.NotesPanel)["texts"] == sheet.curvefold.notes.splitlines()
     bpy.context.active_object.data.curvefold.notes = "folded from a file"
     assert drawn(panels.NotesPanel)["texts"] == ["folded from a file"]
+
+
+def test_a_picture_is_offered(panels, paper):
+    offered = ["set_up_picture", "remove_picture", "animate_picture"]
+    assert drawn(panels.PicturePanel)["operators"] == [f"curvefold.{name}" for name in offered]
