@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 
-from .. import picture, scene
+from .. import later_work, picture, scene
 from .on_paper import OnPaper
 
 ENGINES = (
@@ -64,6 +64,7 @@ class RemovePicture(bpy.types.Operator):
             return False
         return True
 
+    @later_work.kept
     def execute(self, context: bpy.types.Context) -> set[str]:
         papers = [item for item in context.scene.objects if is_paper(item)]
         picture.remove(context.scene, papers)

@@ -200,8 +200,15 @@ def make_ordinary_mesh(sheet):
     bpy.ops.curvefold.make_ordinary_mesh("EXEC_DEFAULT", True)
 
 
+def remove_picture(sheet):
+    bpy.ops.curvefold.make_paper(resolution=12)
+    bpy.ops.curvefold.set_up_picture()
+    bpy.ops.ed.undo_push(message="picture")
+    bpy.ops.curvefold.remove_picture("EXEC_DEFAULT", True)
+
+
 #: Those that cannot be called where they have been called just now, so that Blender does not adjust them.
-DONE_ONCE = (make_crease, sheet_from_object, make_ordinary_mesh)
+DONE_ONCE = (make_crease, sheet_from_object, make_ordinary_mesh, remove_picture)
 
 
 @pytest.mark.parametrize("do", DONE_ONCE)
