@@ -32,6 +32,7 @@ ON_PAPERS = {
     "remove_handle",
     "remove_joint",
     "restore_paper",
+    "rulings_as_attribute",
     "settle",
     "usual_weights",
 }
@@ -41,6 +42,7 @@ ON_DRAWINGS = {"draw_crease", "edit_drawing", "make_crease", "set_assignment"}
 NEUTRAL = {
     "add_sample",
     "add_sheet",
+    "animate_picture",
     "back_to_paper",
     "check_paper",
     "fold_drawing",
@@ -48,7 +50,9 @@ NEUTRAL = {
     "gauss_image_as_object",
     "import_drawing",
     "make_paper",
+    "remove_picture",
     "rulings_as_object",
+    "set_up_picture",
     "sheet_from_object",
     "stroke_crease",
     "take_handle",
