@@ -144,7 +144,7 @@ def is_marked(mesh: Any) -> bool:
     maps, attributes = mesh.uv_layers, mesh.attributes
     if FLAT_UV not in maps or PRINT_UV not in maps:
         return False
-    return all(name in attributes for name in (PATCH, CREASE, ON_CREASE)) and not _has_old_flag(mesh)
+    return all(name in attributes for name in (PATCH, CREASE, ON_CREASE))
 
 
 def can_be_marked(mesh: Any, surface: RenderMap) -> bool:

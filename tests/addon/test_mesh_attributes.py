@@ -49,6 +49,18 @@ def test_assignment_is_the_side_that_the_crease_was_folded_to(folded_paper, live
     assert set(side[crease < 0]) == {0.0}
 
 
+@pytest.mark.parametrize(("letter", "sign"), [("V", 1.0), ("M", -1.0)])
+def test_a_valley_is_positive_and_a_mountain_negative(sheet, live, letter, sign):
+    sheet.children[0].curvefold.assignment = letter
+    bpy.ops.curvefold.make_paper(resolution=12)
+    mesh = bpy.context.active_object.data
+    mesh.curvefold.fold = 50.0
+    live.settle(mesh)
+    on_crease = values(mesh, "crease") == 0
+    assert set(values(mesh, "assignment")[on_crease]) == {sign}
+    assert set(np.sign(values(mesh, "fold_angle")[on_crease])) == {sign}
+
+
 def test_stretch_is_that_of_the_report(folded_paper, live):
     stretch = values(folded_paper.data, "stretch")
     report = live.report(folded_paper.data)
