@@ -7,6 +7,7 @@ import bpy
 from .. import solver
 from . import live
 from .bridge import drawing_objects, linked, state
+from .bridge.papers import is_paper
 
 
 def active_sheet(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -36,7 +37,7 @@ def meant_sheets(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 
 def _sheet_behind(item: bpy.types.Object) -> bpy.types.Object | None:
-    if item.type == "MESH" and item.data.curvefold.is_paper:
+    if is_paper(item):
         return item.data.curvefold.sheet
     return drawing_objects.sheet_of(item)
 

@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterator
 
 import bpy
 
+from .bridge.papers import is_paper
+
 Execute = Callable[[bpy.types.Operator, bpy.types.Context], set[str]]
 
 CHANGED = "This cannot be adjusted any more: what was done since would be lost"
@@ -76,7 +78,7 @@ def _facts(scene: bpy.types.Scene) -> Iterator[object]:
             yield _told(thing.curvefold), thing.parent and thing.parent.name
             if thing.type == "CURVE":
                 yield [_points(spline) for spline in thing.data.splines]
-        if thing.type == "MESH" and thing.data.curvefold.is_paper:
+        if is_paper(thing):
             yield thing.data.name, _told(thing.data.curvefold)
 
 

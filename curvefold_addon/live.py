@@ -14,7 +14,8 @@ from dataclasses import dataclass, field
 import bpy
 
 from .. import solver
-from .bridge import baking, by_hand, controls, drawing, hooks, linked, mesh_attributes, papers, placing, state
+from . import kept_rulings
+from .bridge import baking, by_hand, controls, drawing, hooks, linked, papers, placing, state
 from .bridge.drawing_objects import creases_of, is_part, sheet_of
 from .bridge.report import CreaseReport, Report, describe, describe_crease, describe_fault
 from .bridge.session import Session, carried_session, stored_session
@@ -53,8 +54,6 @@ _sessions: dict[int, Session] = {}
 _parked: dict[int, Session] = {}
 #: Sessions that are being made in the thread.
 _making: dict[int, Future[Session]] = {}
-#: Rulings that are being found in the thread, and of which shape.
-_ruling: dict[int, tuple[int, Future[solver.Rulings]]] = {}
 #: Papers that may have something to do.
 _awake: set[int] = set()
 #: Papers whose drawing or resolution may have changed, and when.
@@ -120,7 +119,7 @@ def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
     _faults.pop(uid, None)
     found.advance(_inputs(paper, found), max_iterations)
     found.write(mesh)
-    _keep_rulings(mesh, found)
+    kept_rulings.keep(mesh, found)
     found.before = None
     _awake.discard(uid)
 
@@ -279,22 +278,11 @@ def keep_shape(paper: bpy.types.Object) -> Callable[[], None]:
 def drop(mesh: bpy.types.Mesh) -> None:
     """A mesh is no paper any more: nothing is left of what was known about it."""
     uid = mesh.session_uid
-    for known in (_sessions, _parked, _making, _ruling, _stale, _faults, _broken):
+    for known in (_sessions, _parked, _making, _stale, _faults, _broken):
         known.pop(uid, None)
+    kept_rulings.drop(uid)
     _awake.discard(uid)
     _look_again()
-
-
-def mark_rulings(paper: bpy.types.Object) -> bool:
-    """Gives a paper's mesh its rulings, which are kept up from now on; whether it has any.
-
-    Raises CurvefoldError, StateError.
-    """
-    found = make_session(paper)
-    lines = solver.rulings(found.net, found.positions)
-    mesh_attributes.write_rulings(paper.data, found.net, lines)
-    found.ruled = found.version
-    return len(lines.segments) > 0
 
 
 def sheet_here(settings: bpy.types.PropertyGroup) -> bpy.types.Object | None:
@@ -316,7 +304,7 @@ def active_paper(context: bpy.types.Context) -> bpy.types.Object | None:
     watch = _watched()
     if active is None:
         return _paper(next(iter(watch.papers))) if len(watch.papers) == 1 else None
-    if active.type == "MESH" and active.data.curvefold.is_paper:
+    if papers.is_paper(active):
         return active
     if is_part(active) and (following := papers_on(sheet_of(active))):
         return following[0]
@@ -402,7 +390,7 @@ def park() -> None:
     _parked.update(_sessions)
     _sessions.clear()
     _making.clear()
-    _ruling.clear()
+    kept_rulings.forget()
     _stale.clear()
     _faults.clear()
     _broken.clear()
@@ -420,7 +408,7 @@ def forget() -> None:
     _sessions.clear()
     _parked.clear()
     _making.clear()
-    _ruling.clear()
+    kept_rulings.forget()
     _stale.clear()
     _faults.clear()
     _broken.clear()
@@ -603,33 +591,8 @@ def _follow_frame(paper: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bp
         _rouse({paper.data.session_uid})
         return
     found.write(paper.data)
-    _keep_rulings(paper.data, found)
+    kept_rulings.keep(paper.data, found)
     found.before = None
-
-
-def _keep_rulings(mesh: bpy.types.Mesh, found: Session) -> None:
-    """A mesh that has rulings gets those of the present shape. Blocking."""
-    if mesh_attributes.asks_for_rulings(mesh) and found.ruled != found.version:
-        mesh_attributes.write_rulings(mesh, found.net, solver.rulings(found.net, found.positions))
-        found.ruled = found.version
-
-
-def _find_rulings(mesh: bpy.types.Mesh, found: Session) -> bool:
-    """The same beside Blender, in the thread, for a paper that rests; whether it is still being done."""
-    uid = mesh.session_uid
-    if not mesh_attributes.asks_for_rulings(mesh) or found.ruled == found.version:
-        return False
-    if uid not in _ruling:
-        _ruling[uid] = found.version, pool().submit(solver.rulings, found.net, found.positions)
-    version, job = _ruling[uid]
-    if not job.done():
-        return True
-    del _ruling[uid]
-    if version != found.version:
-        return True  # it has moved since: once more
-    mesh_attributes.write_rulings(mesh, found.net, job.result())
-    found.ruled = version
-    return False
 
 
 def _follow(uid: int, deadline: float, transforming: bool) -> bool:
@@ -691,7 +654,7 @@ def _follow(uid: int, deadline: float, transforming: bool) -> bool:
     rests = found.rests_with(inputs)
     if rests and not transforming:
         found.before = None
-    if rests and not transforming and _find_rulings(mesh, found):
+    if rests and not transforming and kept_rulings.find(mesh, found):
         return True
     # A hand that holds still may yet be taken back.
     return not rests or uid in _stale or (transforming and found.before is not None)

@@ -66,6 +66,11 @@ def _say_lost(box: KeptBox, context: bpy.types.Context) -> None:
         box.say(f"{active.name} {wording.LOST_CREASE}", "ERROR", alert=True)
 
 
+def _say_troubles(box: KeptBox, sheet: bpy.types.Object) -> None:
+    for trouble in trouble_marks.of_sheet(sheet):
+        box.say(trouble.sentence, "ERROR", alert=True)
+
+
 def _draw_sheet(layout: bpy.types.UILayout, context: bpy.types.Context, sheet: bpy.types.Object) -> None:
     creases = sum(drawing_objects.is_crease(child) for child in sheet.children)
     sheets = drawing_context.meant_sheets(context)
@@ -83,8 +88,7 @@ def _draw_sheet(layout: bpy.types.UILayout, context: bpy.types.Context, sheet: b
         column.operator("curvefold.make_paper", icon="MOD_CLOTH")
     box = KeptBox(layout, context, DRAWING_LINES + (PAPER_LINES if followers else 0))
     _say_lost(box, context)
-    for trouble in trouble_marks.of_sheet(sheet):
-        box.say(trouble.sentence, "ERROR", alert=True)
+    _say_troubles(box, sheet)
     if context.mode == "EDIT_CURVE" and drawing_objects.is_crease(context.active_object):
         box.say(wording.DRAWING, "INFO")
     elif not creases:
@@ -263,8 +267,7 @@ class DrawingPanel(PaperPanel, bpy.types.Panel):
         if sheet is not None and not _is_drawing(context):
             _draw_drawing_tools(self.layout, sheet)
             box = KeptBox(self.layout, context, DRAWING_LINES)
-            for trouble in trouble_marks.of_sheet(sheet):
-                box.say(trouble.sentence, "ERROR", alert=True)
+            _say_troubles(box, sheet)
             box.fill()
 
 

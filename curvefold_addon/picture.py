@@ -198,9 +198,7 @@ def _turn(target: bpy.types.Scene, home: bpy.types.Collection, centre: tuple[flo
     for frame, turn in ((target.frame_start, 0.0), (target.frame_end + 1, 2.0 * pi)):
         pivot.rotation_euler.z = turn
         pivot.keyframe_insert("rotation_euler", index=2, frame=frame)
-    for curve in baking.curves_of(pivot):
-        for point in curve.keyframe_points:
-            point.interpolation = "LINEAR"
+    baking.make_linear(pivot)
     # Where it is in the present frame; asking for the frame itself would move the papers on.
     part = (target.frame_current - target.frame_start) / (target.frame_end + 1 - target.frame_start)
     pivot.rotation_euler.z = 2.0 * pi * part

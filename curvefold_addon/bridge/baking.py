@@ -35,9 +35,7 @@ def store_keys(paper: Any, shapes: Sequence[NDArray[np.float32]], first_frame: i
     for frame, time in ends:
         keys.eval_time = time
         keys.keyframe_insert("eval_time", frame=frame)
-    for curve in curves_of(keys):
-        for point in curve.keyframe_points:
-            point.interpolation = "LINEAR"
+    make_linear(keys)
 
 
 def is_baked(mesh: Any) -> bool:
@@ -55,6 +53,13 @@ def remove_keys(paper: Any) -> None:
     """Takes the shape keys away again."""
     paper.data.shape_keys.animation_data_clear()
     paper.shape_key_clear()
+
+
+def make_linear(owner: Any) -> None:
+    """Lets the animation of a datablock go evenly from key to key."""
+    for curve in curves_of(owner):
+        for point in curve.keyframe_points:
+            point.interpolation = "LINEAR"
 
 
 def curves_of(owner: Any) -> list[Any]:

@@ -181,7 +181,7 @@ def world_positions(paper: Any) -> NDArray[np.float64]:
 def edges_of(mesh: Any, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
     """(n,) the edges of a mesh between pairs (n,2) of its vertices. Raises ValueError where there is none."""
     count = len(mesh.edges)
-    keys = _edge_keys(_edge_ends(mesh), len(mesh.vertices))
+    keys = _edge_keys(edge_ends(mesh), len(mesh.vertices))
     wanted = _edge_keys(np.asarray(pairs).reshape(-1, 2), len(mesh.vertices))
     order = np.argsort(keys)
     slot = np.searchsorted(keys, wanted, sorter=order)
@@ -191,6 +191,34 @@ def edges_of(mesh: Any, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
         raise ValueError(f"{np.count_nonzero(~found)} crease edges of the surface are not edges of its faces")
     edges: NDArray[np.int64] = order[slot]
     return edges
+
+
+def edge_ends(mesh: Any) -> NDArray[np.int32]:
+    """(E,2) vertices of the edges."""
+    ends = np.empty(2 * len(mesh.edges), dtype=np.int32)
+    mesh.edges.foreach_get("vertices", ends)
+    return ends.reshape(-1, 2)
+
+
+def edge_uses(mesh: Any) -> NDArray[np.int64]:
+    """(E,) how many faces each edge has: one on the border."""
+    edges = np.empty(len(mesh.loops), dtype=np.int32)
+    mesh.loops.foreach_get("edge_index", edges)
+    return np.bincount(edges, minlength=len(mesh.edges))
+
+
+def corners_of(lines: NDArray[Any], flat: NDArray[np.float64], degrees: float) -> NDArray[np.bool_]:
+    """(R,) whether exactly two of the edges lines (n,2) meet at a vertex flat (R,2), and turn there by more than
+    ``degrees``.
+    """
+    step = flat[lines[:, 1]] - flat[lines[:, 0]]
+    step /= np.maximum(np.linalg.norm(step, axis=1), 1e-300)[:, None]
+    away = np.zeros_like(flat)
+    np.add.at(away, lines[:, 0], step)
+    np.subtract.at(away, lines[:, 1], step)
+    straight = 2.0 * np.sin(np.radians(degrees) / 2.0)
+    two: NDArray[np.bool_] = np.bincount(lines.ravel(), minlength=len(flat)) == 2
+    return two & (np.linalg.norm(away, axis=1) > straight)
 
 
 def attribute(mesh: Any, name: str, data_type: str, domain: str) -> Any:
@@ -209,9 +237,7 @@ def _mark_edges(mesh: Any, surface: RenderMap) -> None:
     number[edges] = surface.crease_edge_crease
     on_crease = np.zeros(len(mesh.edges), dtype=bool)
     on_crease[edges] = True
-    faces = np.empty(len(mesh.loops), dtype=np.int32)
-    mesh.loops.foreach_get("edge_index", faces)
-    kept = on_crease | (np.bincount(faces, minlength=len(mesh.edges)) == 1)
+    kept = on_crease | (edge_uses(mesh) == 1)
     if _has_old_flag(mesh):
         mesh.attributes.remove(mesh.attributes[CREASE_EDGE])
     attribute(mesh, CREASE, "INT", "EDGE").data.foreach_set("value", number)
@@ -219,35 +245,15 @@ def _mark_edges(mesh: Any, surface: RenderMap) -> None:
     # A border has no other side to be shaded with, but paper with a thickness has an edge there.
     attribute(mesh, _SHARP_EDGE, "BOOLEAN", "EDGE").data.foreach_set("value", kept)
     attribute(mesh, CREASE_EDGE, "FLOAT", "EDGE").data.foreach_set("value", kept.astype(np.float32))
-    corner = _corners(_edge_ends(mesh)[kept], surface.uv)
+    # Where more than two meet, Subdivision keeps the vertex by itself.
+    corner = corners_of(edge_ends(mesh)[kept], surface.uv, _CORNER)
     attribute(mesh, _CREASE_VERTEX, "FLOAT", "POINT").data.foreach_set("value", corner.astype(np.float32))
-
-
-def _corners(lines: NDArray[np.int32], flat: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """(R,) whether a line, one of edges (n,2), turns at a vertex flat (R,2) by more than ``_CORNER``; where more
-    than two meet, Subdivision keeps the vertex by itself.
-    """
-    step = flat[lines[:, 1]] - flat[lines[:, 0]]
-    step /= np.maximum(np.linalg.norm(step, axis=1), 1e-300)[:, None]
-    away = np.zeros_like(flat)
-    np.add.at(away, lines[:, 0], step)
-    np.subtract.at(away, lines[:, 1], step)
-    straight = 2.0 * np.sin(np.radians(_CORNER) / 2.0)
-    corner: NDArray[np.bool_] = np.bincount(lines.ravel(), minlength=len(flat)) == 2
-    return corner & (np.linalg.norm(away, axis=1) > straight)
 
 
 def _has_old_flag(mesh: Any) -> bool:
     """Whether a version before wrote the flag of creases under the name of Blender's own attribute."""
     found = mesh.attributes.get(CREASE_EDGE)
     return found is not None and found.data_type == "BOOLEAN"
-
-
-def _edge_ends(mesh: Any) -> NDArray[np.int32]:
-    """(E,2) vertices of the edges."""
-    ends = np.empty(2 * len(mesh.edges), dtype=np.int32)
-    mesh.edges.foreach_get("vertices", ends)
-    return ends.reshape(-1, 2)
 
 
 def _edge_keys(ends: NDArray[Any], vertices: int) -> NDArray[np.int64]:

@@ -22,6 +22,11 @@ if TYPE_CHECKING:
     from ...solver import FoldResult
 
 
+def is_paper(item: Any) -> bool:
+    """Whether an object shows a paper."""
+    return bool(item.type == "MESH" and item.data.curvefold.is_paper)
+
+
 def new_paper(name: str, collection: Any, material: Any) -> Any:
     """A new object for a paper, without geometry yet."""
     return surface.add_object(bpy.data.meshes.new(name), collection, material)

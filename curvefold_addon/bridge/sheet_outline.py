@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ... import solver
 from . import drawing_objects
 from .drawing import EVEN, FLAT, length_text, read_drawing, shown_strands
+from .mesh import edge_ends, edge_uses
 from .placing import world_matrix
 from .splines import Strand, add_bezier_spline, add_poly_spline, polyline
 
@@ -109,13 +110,8 @@ def _mesh_outlines(item: Any) -> list[Strand]:
     mesh = evaluated.to_mesh()
     points = np.empty(3 * len(mesh.vertices))
     mesh.vertices.foreach_get("co", points)
-    ends = np.empty(2 * len(mesh.edges), dtype=np.int32)
-    mesh.edges.foreach_get("vertices", ends)
-    sides = np.empty(len(mesh.loops), dtype=np.int32)
-    mesh.loops.foreach_get("edge_index", sides)
-    uses = np.bincount(sides, minlength=len(mesh.edges))
+    rim = edge_ends(mesh)[edge_uses(mesh) <= 1]
     evaluated.to_mesh_clear()
-    rim = ends.reshape(-1, 2)[uses <= 1]
     if len(rim) == 0:
         raise solver.PatternError("its faces have no outer edge", element=item.name)
     return [polyline(points.reshape(-1, 3)[loop], closed=True) for loop in _loops(rim, item.name)]

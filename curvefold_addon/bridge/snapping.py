@@ -86,14 +86,10 @@ class _Near:
         self._places = mesh_overlay.shown_positions(mesh)
         self.size = float(np.ptp(self._places, axis=0).max())
         self._flat = _flat_of(mesh)
-        ends = np.empty(2 * len(mesh.edges), dtype=np.int32)
-        mesh.edges.foreach_get("vertices", ends)
         crease = np.empty(len(mesh.edges), dtype=np.int32)
         layer(mesh, mesh.attributes, surface.CREASE).data.foreach_get("value", crease)
-        used = np.empty(len(mesh.loops), dtype=np.int32)
-        mesh.loops.foreach_get("edge_index", used)
-        ends = ends.reshape(-1, 2).astype(np.int64)
-        self._border = ends[np.bincount(used, minlength=len(ends)) == 1]
+        ends = surface.edge_ends(mesh).astype(np.int64)
+        self._border = ends[surface.edge_uses(mesh) == 1]
         folded = crease != surface.NO_CREASE
         self._creases = ends[folded]
         self._numbers = crease[folded]
@@ -109,21 +105,8 @@ class _Near:
 
     def _ends(self) -> Indices:
         """Corners of the sheet, and vertices where creases end or meet."""
-        return np.union1d(self._corners(), self._crease_vertices())
-
-    def _corners(self) -> Indices:
-        others: dict[int, list[int]] = {}
-        for a, b in self._border.tolist():
-            others.setdefault(a, []).append(b)
-            others.setdefault(b, []).append(a)
-        simple = [(k, *ends) for k, ends in others.items() if len(ends) == 2]
-        if not simple:
-            return np.empty(0, dtype=np.int64)
-        middle, first, second = np.array(simple, dtype=np.int64).T
-        one, two = self._flat[middle] - self._flat[first], self._flat[second] - self._flat[middle]
-        turn = np.abs(np.arctan2(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0], (one * two).sum(axis=1)))
-        corners: Indices = middle[turn > np.radians(CORNER)]
-        return corners
+        corners = np.flatnonzero(surface.corners_of(self._border, self._flat, CORNER))
+        return np.union1d(corners, self._crease_vertices())
 
     def _crease_vertices(self) -> Indices:
         """Where another number of crease edges than two meet, or two of different creases."""

@@ -6,6 +6,7 @@ import bpy
 from bpy.props import FloatVectorProperty, StringProperty
 
 from .. import drawing_tool, handle_making, live
+from ..bridge.papers import is_paper
 from ..bridge.state import StateError
 from ..bridge.surface_points import SurfacePoint
 from ..drawing_context import select_only
@@ -30,7 +31,7 @@ class AddHandle(OnPaper, bpy.types.Operator):
         return context.scene.objects.get(self.paper) if self.paper else super().meant(context)
 
     def check(self, paper: bpy.types.Object | None) -> None:
-        if paper is None or paper.type != "MESH" or not paper.data.curvefold.is_paper:
+        if paper is None or not is_paper(paper):
             raise StateError(f"There is no paper {self.paper}")
         super().check(paper)
 

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import bpy
 
-from .. import line_materials, live
+from .. import kept_rulings, line_materials, live
 from ..bridge import baking, line_objects
 from .on_paper import OnPaper
 
@@ -42,7 +42,7 @@ class RulingsAsAttribute(OnPaper, bpy.types.Operator):
             return self.refuse("The paper is baked; free its bake to find its rulings")
         if paper.mode != "OBJECT":
             return self.refuse("Leave Edit Mode before its rulings are written")
-        has_some = live.mark_rulings(paper)
+        has_some = kept_rulings.mark(paper.data, live.make_session(paper))
         plane = "" if has_some else "; it is 0 now, since the paper is plane"
         self.report({"INFO"}, f'{paper.name} has the attribute "ruling"{plane}')
         return {"FINISHED"}

@@ -7,6 +7,7 @@ import bpy
 
 from .. import later_work, live, wording
 from ..bridge import baking, linked, state
+from ..bridge.papers import is_paper
 from ..drawing_context import in_object_mode
 
 
@@ -47,7 +48,7 @@ class MakeOrdinaryMesh(bpy.types.Operator):
 
 def _papers(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The selected papers; where none is selected, the one that is meant."""
-    chosen = [item for item in context.selected_objects if item.type == "MESH" and item.data.curvefold.is_paper]
+    chosen = [item for item in context.selected_objects if is_paper(item)]
     meant = None if chosen else live.active_paper(context)
     return chosen if meant is None else [meant]
 
@@ -71,7 +72,7 @@ def _make_ordinary(mesh: bpy.types.Mesh, chosen: list[bpy.types.Object]) -> None
 
 
 def _menu_entry(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    if any(item.type == "MESH" and item.data.curvefold.is_paper for item in context.selected_objects):
+    if any(is_paper(item) for item in context.selected_objects):
         menu.layout.separator()
         menu.layout.operator(MakeOrdinaryMesh.bl_idname, icon="OUTLINER_OB_MESH")
 

@@ -6,6 +6,7 @@ import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from .. import later_work, picture, scene
+from ..bridge.papers import is_paper
 from .on_paper import OnPaper
 
 ENGINES = (
@@ -83,11 +84,6 @@ class Waiting:
 
     def __exit__(self, *_: object) -> None:
         self._manager.progress_end()
-
-
-def is_paper(item: bpy.types.Object) -> bool:
-    """Whether an object shows a paper."""
-    return item.type == "MESH" and item.data.curvefold.is_paper
 
 
 def papers_meant(context: bpy.types.Context, paper: bpy.types.Object) -> list[bpy.types.Object]:

@@ -7,6 +7,7 @@ import bpy
 from ... import solver
 from .. import later_work
 from ..bridge import linked, sheet_outline
+from ..bridge.papers import is_paper
 from ..drawing_context import in_object_mode, may_change, select_only
 
 
@@ -23,7 +24,7 @@ class SheetFromObject(bpy.types.Operator):
         if active is None or active.type not in {"CURVE", "MESH"}:
             cls.poll_message_set("Select a closed curve or a flat mesh")
             return False
-        if active.curvefold.role != "NONE" or (active.type == "MESH" and active.data.curvefold.is_paper):
+        if active.curvefold.role != "NONE" or is_paper(active):
             cls.poll_message_set("This object is a part of a drawing already")
             return False
         # The curve itself becomes the sheet; of a mesh a new one is made.

@@ -8,6 +8,7 @@ from mathutils import Vector
 
 from ... import solver
 from .. import live
+from ..bridge.papers import is_paper
 from ..bridge.snapping import POINT_REACH
 from ..bridge.state import StateError
 from ..drawing_context import select_only
@@ -51,11 +52,7 @@ class TakeHandle(bpy.types.Operator):
 def _papers(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The papers that are seen, the one that is meant first."""
     meant = live.active_paper(context)
-    seen = [
-        item
-        for item in context.visible_objects
-        if item.type == "MESH" and item.data.curvefold.is_paper and item != meant
-    ]
+    seen = [item for item in context.visible_objects if is_paper(item) and item != meant]
     return seen if meant is None or not meant.visible_get() else [meant, *seen]
 
 

@@ -9,6 +9,7 @@ import bpy
 from .. import live
 from ..bridge import baking, by_hand, mesh_overlay
 from ..bridge import overlay as arrays
+from ..bridge.papers import is_paper
 
 #: A shape is at rest, and worth finding rulings for, when it is the same after this many seconds.
 REST = 0.12
@@ -67,8 +68,7 @@ def papers(context: bpy.types.Context) -> Iterator[bpy.types.Object]:
     if not any(mesh.curvefold.is_paper for mesh in bpy.data.meshes):
         return
     for item in context.view_layer.objects:
-        is_paper = item.type == "MESH" and item.data.curvefold.is_paper and item.mode != "EDIT"
-        if is_paper and item.visible_in_viewport_get(context.space_data):
+        if is_paper(item) and item.mode != "EDIT" and item.visible_in_viewport_get(context.space_data):
             yield item
 
 
