@@ -95,7 +95,8 @@ def remove(target: bpy.types.Scene, papers: Sequence[bpy.types.Object]) -> None:
         return
     _bring_back(target)
     target.camera, target.world = home.get(_CAMERA), home.get(_WORLD)
-    _restore(target, home[_SETTINGS].to_dict())
+    if _SETTINGS in home:  # the command line builds it in a scene that had nothing
+        _restore(target, home[_SETTINGS].to_dict())
     for paper in papers:
         modifier = paper.modifiers.get(THICKNESS)
         if modifier is not None:

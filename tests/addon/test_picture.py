@@ -117,6 +117,18 @@ def test_it_comes_back_from_a_saved_file(things, tmp_path):
     assert not any(item.hide_render for item in scene.objects if item.type in ("MESH", "LIGHT"))
 
 
+@pytest.mark.parametrize("again", [False, True], ids=["as it is", "set up again"])
+def test_a_picture_of_the_command_line_can_be_removed(folded_paper, extension, again):
+    scene = extension("curvefold_addon.scene")
+    scene.set_up(folded_paper, scene.PictureSettings())
+    if again:
+        bpy.ops.curvefold.set_up_picture()
+    assert bpy.ops.curvefold.remove_picture() == {"FINISHED"}
+    assert {item.type for item in bpy.context.scene.objects} == {"MESH", "CURVE"}
+    assert bpy.context.scene.camera is None
+    assert not bpy.ops.curvefold.remove_picture.poll()
+
+
 def test_twice_is_once(things):
     bpy.ops.curvefold.set_up_picture()
     there, first = inventory(), state()
