@@ -36,31 +36,29 @@ _EASINGS = 6
 
 
 class AngleDrive(Pull):
-    """The fold-angle term on all creases, with one strength and a ramp for each crease."""
+    """The fold-angle term on all creases: one torque, raised until the median angle is what was asked."""
 
     def __init__(self, net: PiecewiseDog, weight: float) -> None:
         self._net, self._weight = net, weight * HALF_ANGLE
-        count = len(net.crease_labels)
         self._crease = net.crease_points.crease[driven_points(net)]
-        self._strength, self._eased = 1.0, 0
-        self._now = np.zeros(count)  # degrees asked for now, by crease
-        self._amount = np.ones(count)
+        self._amount = np.ones(len(net.crease_labels))
         self._released = np.zeros(len(self._crease), dtype=bool)
         self.angle: float | None = None
+        self._start()
+
+    def _start(self) -> None:
+        self._shift, self._strength = 0.0, 1.0
+        self._aims, self._eased, self._short = 0, 0, np.inf
 
     @property
     def asked(self) -> float | None:
-        """The largest angle asked for now, degrees; None when the drive is off."""
-        return None if self.angle is None else float(self._now.max(initial=0.0))
+        """The angle asked for, degrees; None when the drive is off."""
+        return self.angle
 
     def set(self, degrees: float | None, x: FloatArray) -> None:
-        """Another angle, None for none. Switched on, each crease's ramp starts from its present angle in x."""
-        if degrees is not None and self.angle is None:
-            self._now = present_angles(self._net, x)
-        elif degrees is None:
-            self._now = np.zeros_like(self._now)
+        """Another angle, None for none."""
         self.angle = degrees
-        self._strength, self._eased = 1.0, 0
+        self._start()
 
     def set_amounts(self, amount: FloatArray) -> None:
         """amount (creases,): the part of the angle that each crease is driven to."""
@@ -72,35 +70,40 @@ class AngleDrive(Pull):
         self._released = points
         return changed and self.angle is not None
 
-    def restart(self, crease: int, degrees: float) -> None:
-        """Begin the ramp of one crease anew from an angle."""
-        self._now[crease] = degrees
-
     def terms(self) -> list[Term]:
         if self.angle is None:
             return []
         weight = np.where(self._released, 0.0, self._weight * self._strength)
-        return [fold_angle(self._net, self._now[self._crease], weight)]
+        asked = np.clip(((self.angle + self._shift) * self._amount), 0.0, 180.0)
+        return [fold_angle(self._net, asked[self._crease], weight)]
 
     def asks(self, x: FloatArray) -> bool:
         return bool(self.angle) and self._weight > 0 and bool((self._amount[self._crease] > 0).any())
 
-    def begin(self, x: FloatArray) -> None:
-        if self.angle is not None:
-            self._now = np.minimum(FIRST_ANGLE, self._targets())
-
-    def on_way(self) -> bool:
-        return self.angle is not None and not np.array_equal(self._targets(), self._now)
-
-    def move(self, x: FloatArray, pace: float) -> bool:
-        if self.angle is None:
+    def aim(self, x: FloatArray) -> bool:
+        """Ask for as much more as the median misses, or pull harder where that does not help."""
+        if not self.angle or self._weight == 0 or self._aims >= AIMS:
             return False
-        gap = self._targets() - self._now
-        if not gap.any():
+        short = self.angle - self._median(x)
+        if abs(short) <= AIMED:
             return False
-        rate = ANGLE_RATE * pace
-        self._now = np.where(np.abs(gap) <= rate + 1e-9, self._targets(), self._now + np.clip(gap, -rate, rate))
+        self._aims += 1
+        if short > 0 and short > GAIN * self._short:
+            if self._strength >= MOST or mean_stretch(self._net, x) > MEAN_BUDGET:
+                return False
+            self._strength *= HARDER
+        else:
+            self._shift = float(np.clip(self._shift + short, -MOST_SHIFT, MOST_SHIFT))
+        self._short = short if short > 0 else np.inf
         return True
+
+    def _median(self, x: FloatArray) -> float:
+        """Median angle, degrees, of the points that are driven, each in parts of its crease's amount."""
+        amount = self._amount[self._crease]
+        mine = ~self._released & (amount > 0)
+        angle = measure(self._net, self._net.frame.to_drawing(x)).fold_angle[driven_points(self._net)]
+        mine &= np.isfinite(angle)
+        return float(np.median(angle[mine] / amount[mine])) if mine.any() else float(self.angle or 0.0)
 
     def settle(self, x: FloatArray) -> bool:
         """Give way at rest in x (V,3) when the paper is stretched over the budget."""
@@ -113,13 +116,6 @@ class AngleDrive(Pull):
         self._eased += 1
         return True
 
-    def mark(self) -> object:
-        return self._now
-
-    def go_back(self, mark: object) -> None:
-        if isinstance(mark, np.ndarray) and self.angle is not None:
-            self._now = mark
-
     def shortfall(self, x: FloatArray) -> float:
         if self.angle is None or self._weight == 0:
             return 0.0
@@ -128,22 +124,18 @@ class AngleDrive(Pull):
         return float(np.maximum(1.0 - present_angles(self._net, x)[free] / targets, 0.0).sum())
 
     def findings(self, x: FloatArray) -> list[Finding]:
-        """The first of the creases that stay well below what the drive asks of them, and how many more do."""
-        if self.angle is None or self._weight == 0:
+        if not self.angle or self._weight == 0:
             return []
-        free = np.unique(self._crease[~self._released])
-        present, targets = present_angles(self._net, x), self._targets()
-        short = free[present[free] < ANGLE_REACHED * targets[free]]
-        if len(short) == 0:
+        median = self._median(x)
+        if median >= ANGLE_REACHED * self.angle:
             return []
-        k, more = int(short[0]), len(short) - 1
-        sentence = f"{self._net.crease_labels[k]} came to {present[k]:.0f}° of the {targets[k]:.0f}° asked"
-        if more:
-            sentence += f", and {more} more {'creases do' if more > 1 else 'does'} not reach theirs either"
-        return [Finding(Lack.DEPTH, sentence, k)]
+        return [Finding(Lack.DEPTH, f"the creases came to {median:.0f}° in the median of the {self.angle:.0f}° asked")]
 
     def _targets(self) -> FloatArray:
         return np.clip((self.angle or 0.0) * self._amount, 0.0, 180.0)
+
+
+AIMS, AIMED, GAIN, MOST, HARDER, MOST_SHIFT = 10, 0.5, 0.5, 30.0, 3.0, 30.0
 
 
 def edge_stretch(net: PiecewiseDog, x: FloatArray) -> FloatArray:

@@ -36,9 +36,10 @@ from .optimize.sqp import StepReport, at_rest, sqp_step
 from .optimize.term import ResidualTerm
 
 #: Softness of the constraints, 1/energy: while targets move, then in stages at rest.
-EPS_STAGES = (1e-2, 1e-3, 1e-5)
+EPS_FIRST, EPS_LAST, EPS_FALL = 1e-2, 1e-5, 0.5
+AIM_FIRST, AIM_LAST = True, True
 #: Still: over this many iterations the merit falls by less than this part of itself (or by _NOTHING).
-_STILL_OVER, _STILL_PART, _NOTHING = 10, 2e-3, 1e-7
+_STILL_OVER, _STILL_PART, _NOTHING = 5, 1e-3, 1e-7
 #: A stage ends after so many iterations even if it is not still: the rest is creep (method, section 3).
 _STAGE_MOST = 60
 #: The offset lifts no vertex by more than this, net units.
@@ -109,12 +110,12 @@ class FoldModel:
         self._paper = PaperPull(net, self.weights.isometry, self.weights.continuity)
         self._handles = HandlePull(net, self.weights.handles)
         self._condition = ConditionPull(net, self.weights.fold_condition)
-        self._drive = AngleDrive(net, self.weights.fold_angle)
+        self._drive = AngleDrive(net, self.weights.drive)
         self._problem: Problem | None = None
         self._told_anew = True  # whether the problem may not hold the pulls' present terms
         self._shape: dict[str, IntArray] = {}  # stencils of the pulls' terms in the problem
         self._merits: list[float] = []
-        self._stage, self._still, self._steps_down = 0, False, 0
+        self._eps, self._still, self._steps_down = EPS_FIRST, False, 0
         self._finishing = Finishing(net)
         self._opening: AngleDrive | None = None  # at work while a sheet that is folded anew opens
         self._way = Homotopy()
@@ -223,7 +224,7 @@ class FoldModel:
         flat = np.column_stack([self.net.flat, np.zeros(len(self.net.flat))])
         self._state = at_rest(flat)
         self._condition = ConditionPull(self.net, self.weights.fold_condition)
-        self._opening = AngleDrive(self.net, self.weights.fold_angle)
+        self._opening = AngleDrive(self.net, self.weights.drive)
         self._opening.set(opening, flat)
         self._wake()
 
@@ -255,7 +256,7 @@ class FoldModel:
                 else:
                     self._keep_up(problem)
                     moving = self._move_targets(problem)
-                    self._state, step = sqp_step(problem, self._state, EPS_STAGES[self._stage])
+                    self._state, step = sqp_step(problem, self._state, self._eps)
                     steps.append(step)
                     self._watch(problem, step, moving)
             except NotPositiveDefiniteError:
@@ -307,7 +308,7 @@ class FoldModel:
 
     def _settle_anew(self) -> None:
         """Whatever was known of the shape's coming to rest holds no longer."""
-        self._merits, self._stage, self._still = [], 0, False
+        self._merits, self._eps, self._still = [], EPS_FIRST, False
         self._finishing = Finishing(self.net)
 
     def _prepared(self) -> Problem:
@@ -361,7 +362,7 @@ class FoldModel:
         """
         if not len(self._handles) or self._opening or self._drive.angle is not None or self._controlled():
             self._condition.look_away()
-        elif self._stage == 0 and self._condition.keep_up(self._state.x):
+        elif self._eps == EPS_FIRST and self._condition.keep_up(self._state.x):
             self._replace(problem, self._condition)
             self._merits = []  # of other weights
 
@@ -413,6 +414,9 @@ class FoldModel:
         if moving:
             self._merits = []
             return
+        if EPS_LAST < self._eps < EPS_FIRST:
+            self._eps = max(EPS_LAST, EPS_FALL * self._eps)
+            return
         self._merits.append(step.merit)
         recent = self._merits[-_STILL_OVER:]
         fall = recent[0] - recent[-1]
@@ -420,12 +424,22 @@ class FoldModel:
         if not still and len(self._merits) < _STAGE_MOST:
             return
         self._merits = []
-        if self._stage + 1 < len(EPS_STAGES):
-            self._stage += 1
+        if self._eps == EPS_FIRST:
+            if not (AIM_FIRST and self._aimed(problem)):
+                self._eps *= EPS_FALL
+        elif AIM_LAST and self._aimed(problem):
+            pass
         elif self._opening is not None:
             self._opened()
         elif not self._lies_down():
             self._still = not self._amended(problem)
+
+    def _aimed(self, problem: Problem) -> bool:
+        """At the end of the first stage: whether something that aims at a measured value asks otherwise now."""
+        changed = [pull for pull in self._pulls() if pull.aim(self._state.x)]
+        for pull in changed:
+            self._replace(problem, pull)
+        return bool(changed)
 
     def _opened(self) -> None:
         """All creases are folded: from here on everything pulls, from where the paper is now."""
@@ -457,7 +471,7 @@ class FoldModel:
         if off < _NEARLY_FLAT:
             self._state, self.status = at_rest(lying), Status.SETTLED
         else:
-            self._state, self._stage = at_rest(0.5 * (x + lying)), 0
+            self._state, self._eps = at_rest(0.5 * (x + lying)), EPS_FIRST
             self._steps_down += 1
         return True
 

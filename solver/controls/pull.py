@@ -76,6 +76,13 @@ class Pull:
         """Lead the targets at most ``pace`` usual steps on; whether they have moved."""
         return False
 
+    def aim(self, x: FloatArray) -> bool:
+        """In x, at the end of the first stage: ask for more or less, so that what is measured is what was asked.
+
+        Whether any value has changed.
+        """
+        return False
+
     def settle(self, x: FloatArray) -> bool:
         """At rest in x: give way, or pull harder. Whether any value has changed."""
         return False
