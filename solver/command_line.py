@@ -206,8 +206,7 @@ def _progress(stream: TextIO) -> Callable[[int, SqpReport], None]:
         if now - last[0] < _PROGRESS_SECONDS:
             return
         last[0] = now
-        asked = "" if report.asked_angle is None else f", angle asked {report.asked_angle:.0f}°"
-        print(f"{iterations} iterations{asked}: {report.status.sentence}", file=stream, flush=True)
+        print(f"{iterations} iterations: {report.status.sentence}", file=stream, flush=True)
 
     return show
 

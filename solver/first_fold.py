@@ -27,6 +27,8 @@ from .objectives.bending import bending
 from .objectives.continuity import continuity
 from .objectives.fold_angle import driven_points
 
+#: Fold that the first offset gives a flat sheet, degrees: paths of asked angles start from it.
+FIRST_ANGLE = 2.0
 #: Up to this many chains all choices are tried; more are improved one flip at a time.
 _ENUMERATED = 14
 #: Pairs are flipped among the first so many chains.

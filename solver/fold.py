@@ -237,6 +237,7 @@ def fold(
     model.set_controls(description.controls)
     model.set_handles(description.handles)
     model.set_fold_angle(description.angle)
+    model.set_least_fold(description.least_fold)
     rest = come_to_rest(model, description, progress)
     return FoldResult(
         pattern,

@@ -19,15 +19,16 @@ from .controls.curve import Curve, CurvePull
 from .controls.handle_pull import REACHED as REACHED
 from .controls.handle_pull import HandlePull
 from .controls.homotopy import Homotopy
+from .controls.least_fold import LeastFold
 from .controls.paper_pull import PaperPull
 from .controls.pull import Finding, Pull
 from .controls.registry import KINDS, control_label
 from .controls.side import Side, found_letters
-from .description import Handle, Weights
-from .drive import FIRST_ANGLE, MAX_MEAN_STRETCH, AngleDrive, mean_stretch
+from .description import LEAST_FOLD, Handle, Weights
+from .drive import MAX_MEAN_STRETCH, AngleDrive, mean_stretch
 from .errors import DescriptionError, NotPositiveDefiniteError
 from .finishing import Finishing, Next
-from .first_fold import choose_sides, first_bend, first_fold
+from .first_fold import FIRST_ANGLE, choose_sides, first_bend, first_fold
 from .laid_flat import laid_flat, off_plane
 from .net.piecewise_dog import PiecewiseDog
 from .objectives.bending import bending
@@ -35,9 +36,9 @@ from .optimize.assembly import Problem
 from .optimize.sqp import StepReport, at_rest, sqp_step
 from .optimize.term import ResidualTerm
 
-#: Softness of the constraints, 1/energy: while targets move, then in stages at rest.
-EPS_FIRST, EPS_LAST, EPS_FALL = 1e-2, 1e-5, 0.5
-AIM_FIRST, AIM_LAST = True, True
+#: Softness of the constraints, 1/energy: until the shape is still, and in the end; between them it falls by this
+#: factor an iteration.
+EPS_FIRST, EPS_LAST, _EPS_FALL = 1e-2, 1e-5, 0.5
 #: Still: over this many iterations the merit falls by less than this part of itself (or by _NOTHING).
 _STILL_OVER, _STILL_PART, _NOTHING = 5, 1e-3, 1e-7
 #: A stage ends after so many iterations even if it is not still: the rest is creep (method, section 3).
@@ -70,7 +71,6 @@ class SqpReport:
 
     status; iterations done; objective by term; constraint: largest DOG residual
     handle_error: largest distance of a handle from its target, drawing units (0 without handles)
-    asked_angle: the angle the drive asks for now, degrees, None without a drive
     step_lengths, backtracks (one an iteration); seconds by part, and in all
     """
 
@@ -79,7 +79,6 @@ class SqpReport:
     objective: dict[str, float]
     constraint: float
     handle_error: float
-    asked_angle: float | None
     step_lengths: tuple[float, ...]
     backtracks: tuple[int, ...]
     seconds: dict[str, float]
@@ -111,6 +110,8 @@ class FoldModel:
         self._handles = HandlePull(net, self.weights.handles)
         self._condition = ConditionPull(net, self.weights.fold_condition)
         self._drive = AngleDrive(net, self.weights.drive)
+        self._least = LeastFold(net, self.weights.least_fold)
+        self._least.set(LEAST_FOLD)
         self._problem: Problem | None = None
         self._told_anew = True  # whether the problem may not hold the pulls' present terms
         self._shape: dict[str, IntArray] = {}  # stencils of the pulls' terms in the problem
@@ -211,8 +212,15 @@ class FoldModel:
         """Drive all creases towards an unsigned fold angle, 0 to 180 degrees; None switches the drive off."""
         if degrees is not None and not 0 <= degrees <= 180:
             raise ValueError("the fold angle must lie between 0 and 180 degrees")
-        self._drive.set(None if degrees is None else float(degrees), self._state.x)
+        self._drive.set(None if degrees is None else float(degrees))
         self._condition.unfolding = degrees == 0
+        self._wake()
+
+    def set_least_fold(self, degrees: float) -> None:
+        """Fold every crease point at least so far, 0 to 180 degrees, where handles alone bend the paper; 0: off."""
+        if not 0 <= degrees <= 180:
+            raise ValueError("the least fold must lie between 0 and 180 degrees")
+        self._least.set(float(degrees))
         self._wake()
 
     def fold_anew(self, opening: float = OPENING_ANGLES[0]) -> None:
@@ -225,7 +233,7 @@ class FoldModel:
         self._state = at_rest(flat)
         self._condition = ConditionPull(self.net, self.weights.fold_condition)
         self._opening = AngleDrive(self.net, self.weights.drive)
-        self._opening.set(opening, flat)
+        self._opening.set(opening)
         self._wake()
 
     def again(self, positions: ArrayLike) -> FoldModel:
@@ -281,7 +289,6 @@ class FoldModel:
             problem.objective_by_term(evaluation),
             float(np.abs(evaluation.constraint).max(initial=0.0)),
             float(self._handles.gaps(self._state.x).max(initial=0.0)) * self.net.frame.unit,
-            self._drive.asked,
             tuple(step.step_length for step in steps),
             tuple(step.backtracks for step in steps),
             spent,
@@ -295,13 +302,14 @@ class FoldModel:
             sides = [pull for kind, (_, pull) in self._at_work.items() if kind == Side.kind]
             return [self._paper, self._condition, self._opening, *sides]
         at_work = (pull for _, pull in self._at_work.values())
-        return [self._paper, self._handles, self._condition, self._drive, *at_work]
+        return [self._paper, self._handles, self._condition, self._drive, self._least, *at_work]
 
     def _wake(self) -> None:
         self.status = Status.RUNNING
         self._settle_anew()
         self._steps_down = 0
         self._way.start_anew()
+        self._least.bend(self._off_flat())
         for pull in self._pulls():
             pull.wake()
         self._told_anew = True
@@ -370,6 +378,14 @@ class FoldModel:
         """Whether the paper is told more than handles and an angle for all creases; a side is more."""
         return any(controls for controls, _ in self._at_work.values())
 
+    def _off_flat(self) -> float:
+        """By how much the flat sheet misses the handles, net units, where nothing but handles bends the paper."""
+        if not len(self._handles) or self._drive.angle is not None or self._controlled():
+            return 0.0
+        flat = np.column_stack([self.net.flat, np.zeros(len(self.net.flat))])
+        lying = laid_flat(self.net.flat, flat, *self._handles.anchors())
+        return float(self._handles.gaps(lying).max())
+
     def _move_targets(self, problem: Problem) -> bool:
         """Bring the targets of this iteration a step nearer; whether they are still on their way."""
         pulls = self._pulls()
@@ -406,8 +422,9 @@ class FoldModel:
     def _release(self, problem: Problem) -> None:
         """Let the drive know which points something else turns."""
         masks = [mask for pull in self._pulls() if (mask := pull.released()) is not None]
-        if masks and self._drive.release(np.logical_or.reduce(masks)):
-            self._replace(problem, self._drive)
+        for pull in (self._drive, self._least) if masks else ():
+            if pull.release(np.logical_or.reduce(masks)):
+                self._replace(problem, pull)
 
     def _watch(self, problem: Problem, step: StepReport, moving: bool) -> None:
         """Notice when a stage is over: targets at rest and the merit no longer falling."""
@@ -415,7 +432,7 @@ class FoldModel:
             self._merits = []
             return
         if EPS_LAST < self._eps < EPS_FIRST:
-            self._eps = max(EPS_LAST, EPS_FALL * self._eps)
+            self._eps = max(EPS_LAST, _EPS_FALL * self._eps)
             return
         self._merits.append(step.merit)
         recent = self._merits[-_STILL_OVER:]
@@ -424,18 +441,17 @@ class FoldModel:
         if not still and len(self._merits) < _STAGE_MOST:
             return
         self._merits = []
+        if self._aimed(problem):
+            return
         if self._eps == EPS_FIRST:
-            if not (AIM_FIRST and self._aimed(problem)):
-                self._eps *= EPS_FALL
-        elif AIM_LAST and self._aimed(problem):
-            pass
+            self._eps *= _EPS_FALL
         elif self._opening is not None:
             self._opened()
         elif not self._lies_down():
             self._still = not self._amended(problem)
 
     def _aimed(self, problem: Problem) -> bool:
-        """At the end of the first stage: whether something that aims at a measured value asks otherwise now."""
+        """At rest: whether something that aims at a measured value asks otherwise now."""
         changed = [pull for pull in self._pulls() if pull.aim(self._state.x)]
         for pull in changed:
             self._replace(problem, pull)
@@ -448,8 +464,8 @@ class FoldModel:
         self._condition.unfolding = angle == 0
         self._handles.set((), x)
         self._handles.set(handles, x)
-        self._drive.set(None, x)
-        self._drive.set(angle, x)
+        self._drive.set(None)
+        self._drive.set(angle)
         for controls, pull in self._at_work.values():
             pull.set((), x)
             pull.set(controls, x)

@@ -12,13 +12,11 @@ from .arrays import BoolArray, FloatArray, IntArray, frozen_array
 from .net.crease_frames import CreaseFrames, crease_frames
 from .net.piecewise_dog import PiecewiseDog
 
-#: Tilts (sines) below this are flat: neither folded nor bent.
-FLAT_TILT = 1e-6
 #: A crease is a mountain or valley when its points on one side outnumber the others by this part of all.
 _ONE_SIDED = 0.8
-#: A crease folded by less than this in the median is flat, degrees: a sheet that was laid down keeps traces of a
-#: side, which nobody sees and nobody wants locked.
-FLAT_ANGLE = 0.1
+#: A crease point folded by less than this is flat, degrees, and so is a crease whose median is less: a sheet that
+#: was laid down keeps traces of a side, which nobody sees and nobody wants locked.
+FLAT_ANGLE = 0.5
 #: FOLD's letters of sides in words.
 _SIDES = {"V": "valley", "M": "mountain"}
 
@@ -32,7 +30,8 @@ class Measurement:
     dog_angle (S,)        largest difference between the four angles around an inner vertex
     fold_angle (K,)       unsigned angle between the tangent planes, 0 flat, 180 folded shut; NaN at ends
     fold_sign (K,)        +1 valley, -1 mountain (seen from the front), 0 where there is no angle
-    folded (K,)           whether the fold condition holds; True where it is not asked
+    folded (K,)           whether both sides lie on one side of the osculating plane, FLAT_ANGLE apart or more; True
+                          where the fold condition is not asked
     asked (K,)            whether the point carries the fold condition
     crease (K,)           the crease of each point; crease_position (K,2) on the flat sheet, drawing units
     """
@@ -93,8 +92,8 @@ def measure(net: PiecewiseDog, positions: ArrayLike) -> Measurement:
     folded, asked = np.ones(count, dtype=bool), np.zeros(count, dtype=bool)
     if len(points.carrier):
         first, second = _tilts(net, x)
-        small = np.minimum(np.abs(first), np.abs(second))
-        folded[points.carrier] = (first * second < 0) & (small > FLAT_TILT)
+        # NaN (no angle there) is not flat.
+        folded[points.carrier] = (first * second < 0) & ~(angle[points.carrier] < FLAT_ANGLE)
         asked[points.carrier] = True
     return Measurement(
         np.abs(length / net.edge_length - 1),

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
-from ..drive import ANGLE_RATE, FIRST_ANGLE, HALF_ANGLE, MEAN_BUDGET, mean_stretch
+from ..drive import HALF_ANGLE, MEAN_BUDGET, mean_stretch
+from ..first_fold import FIRST_ANGLE
 from ..errors import DescriptionError
 from ..measurement import measure
 from ..net.piecewise_dog import PiecewiseDog
@@ -18,6 +19,8 @@ from ..objectives.signed_fold import signed_fold, signed_points
 from .control import Control, ControlPull, CreaseName, crease_index, crease_name, flag, number, positive, vector
 from .pull import Finding, Lack, Term
 
+#: An asked angle turns at most this much an iteration, degrees (method, section 4: 70° in 225).
+ANGLE_RATE = 0.4
 #: A place may miss the nearest crease point by this much, net units.
 _NEAR = 1.5
 #: At rest the asked value is corrected by the measured error, which is of second order in the grid where the
