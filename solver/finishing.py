@@ -13,10 +13,9 @@ from enum import Enum
 import numpy as np
 
 from .arrays import FloatArray
-from .controls.condition_pull import FLAT
 from .controls.pull import Pull
 from .drive import MAX_MEAN_STRETCH, SHAREABLE_STRETCH, mean_stretch
-from .laid_flat import off_plane
+from .laid_flat import FLAT, off_plane
 from .net.piecewise_dog import PiecewiseDog
 from .optimize.assembly import Problem
 from .optimize.sqp import projection_step, tangent_step

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from .arrays import FloatArray, IntArray, frozen_array
 from .constraints.orthogonal_geodesic import LinkAngles, StarAngles
 from .controls.agreement import check_agreement, with_reasons
-from .controls.condition_pull import FLAT, ConditionPull
+from .controls.condition_pull import ConditionPull
 from .controls.control import Control, ControlPull
 from .controls.curve import Curve, CurvePull
 from .controls.handle_pull import REACHED as REACHED
@@ -29,7 +29,7 @@ from .drive import MAX_MEAN_STRETCH, AngleDrive, mean_stretch
 from .errors import DescriptionError, NotPositiveDefiniteError
 from .finishing import Finishing, Next
 from .first_fold import FIRST_ANGLE, choose_sides, first_bend, first_fold
-from .laid_flat import laid_flat, off_plane
+from .laid_flat import FLAT, laid_flat, off_plane
 from .net.piecewise_dog import PiecewiseDog
 from .objectives.bending import bending
 from .optimize.assembly import Problem
@@ -213,7 +213,7 @@ class FoldModel:
         if degrees is not None and not 0 <= degrees <= 180:
             raise ValueError("the fold angle must lie between 0 and 180 degrees")
         self._drive.set(None if degrees is None else float(degrees))
-        self._condition.unfolding = degrees == 0
+        self._least.unfolding = degrees == 0
         self._wake()
 
     def set_least_fold(self, degrees: float) -> None:
@@ -231,7 +231,7 @@ class FoldModel:
         """
         flat = np.column_stack([self.net.flat, np.zeros(len(self.net.flat))])
         self._state = at_rest(flat)
-        self._condition = ConditionPull(self.net, self.weights.fold_condition)
+        self._least.start_anew()
         self._opening = AngleDrive(self.net, self.weights.drive)
         self._opening.set(opening)
         self._wake()
@@ -300,7 +300,7 @@ class FoldModel:
         """Everything that pulls, in a fixed order."""
         if self._opening is not None:
             sides = [pull for kind, (_, pull) in self._at_work.items() if kind == Side.kind]
-            return [self._paper, self._condition, self._opening, *sides]
+            return [self._paper, self._condition, self._opening, self._least, *sides]
         at_work = (pull for _, pull in self._at_work.values())
         return [self._paper, self._handles, self._condition, self._drive, self._least, *at_work]
 
@@ -363,16 +363,9 @@ class FoldModel:
         problem.replace({term.name: term for term in pull.terms()})
 
     def _keep_up(self, problem: Problem) -> None:
-        """Fold what a drag leaves unfolded while it is on its way, where nothing but handles pulls.
-
-        With anything else it decides which of several folds a paper takes, and the wrong one may end stuck: a sheet
-        with two arcs that is glued to a ring does not close.
-        """
-        if not len(self._handles) or self._opening or self._drive.angle is not None or self._controlled():
-            self._condition.look_away()
-        elif self._eps == EPS_FIRST and self._condition.keep_up(self._state.x):
-            self._replace(problem, self._condition)
-            self._merits = []  # of other weights
+        """Tell what follows the shape where it is."""
+        if self._least.keep_up(self._state.x):
+            self._replace(problem, self._least)
 
     def _controlled(self) -> bool:
         """Whether the paper is told more than handles and an angle for all creases; a side is more."""
@@ -461,7 +454,7 @@ class FoldModel:
         """All creases are folded: from here on everything pulls, from where the paper is now."""
         self._opening = None
         x, handles, angle = self._state.x, self._handles.handles, self._drive.angle
-        self._condition.unfolding = angle == 0
+        self._least.unfolding = angle == 0
         self._handles.set((), x)
         self._handles.set(handles, x)
         self._drive.set(None)

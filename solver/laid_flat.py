@@ -6,6 +6,8 @@ import numpy as np
 
 from .arrays import FloatArray
 
+#: A net whose vertices all lie within this of a plane is flat, net units.
+FLAT = 1e-9
 #: How much more an anchor counts than all vertices together, and in how many passes the rest of it goes away.
 _ANCHOR, _PASSES = 1e8, 3
 

@@ -1,7 +1,9 @@
-"""A soft torque beside handles: it folds the creases that handles leave flat, and never flattens a deeper fold.
+"""A soft torque that folds what nothing else folds, and never flattens a deeper fold.
 
-Flat is a resting place of a crease even where the paper around it bends. So while handles bend the paper, every
-crease point that is shallower than the least fold is pulled towards it, so softly that handles stay where they are.
+Flat is a resting place of a crease even where the paper around it bends. So while handles alone bend the paper, every
+crease point that is shallower than the least fold is pulled towards it, to the side to which most of its crease is
+folded, so softly that handles stay where they are. And whatever pulls: points that come to rest flat are pulled to a
+faint fold, harder and harder.
 """
 
 from __future__ import annotations
@@ -10,26 +12,41 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import BoolArray
+from ..arrays import BoolArray, FloatArray, IntArray
 from ..drive import HALF_ANGLE
+from ..laid_flat import FLAT, off_plane
+from ..measurement import measure
 from ..net.piecewise_dog import PiecewiseDog
-from ..objectives.fold_angle import driven_points, fold_angle
+from ..objectives.signed_fold import signed_fold, signed_points
+from ..optimize.term import gather
 from .pull import Pull, Term
 
 #: Handles that the flat sheet misses by this part of its longer side ask for the whole of the least fold, those
 #: that it misses by less for as much less: a short drag folds a little.
 _WHOLE = 0.05
+#: The sides are looked at every so many iterations.
+_LOOK_EVERY = 10
+#: Points that rest flat are asked for so much more fold each time, degrees, and so many times harder, at most so often.
+_FAINT, _HARDER, _MOST_HARDER = 2.0, 8.0, 5
 
 
 class LeastFold(Pull):
-    """The one-sided fold-angle term on all creases."""
+    """The one-sided signed-angle term on all creases. Its sides follow the paper: +1 valley, -1 mountain.
+
+    ``unfolding`` is set while the paper goes back to flat: then no point is asked to be folded.
+    """
 
     def __init__(self, net: PiecewiseDog, weight: float) -> None:
         self._net, self._weight = net, weight * HALF_ANGLE
-        self._count = len(driven_points(net))
+        self._points = signed_points(net)
+        self._chain = net.crease_points.chain[self._points]
+        self._term = signed_fold(net, self._points, np.zeros(len(self._points)), 0, 0.0, "least fold")
         self._size = float(np.ptp(net.flat, axis=0).max())
-        self._released = np.zeros(self._count, dtype=bool)
-        self._degrees, self._part = 0.0, 0.0
+        self._released = np.zeros(len(self._points), dtype=bool)
+        self._side: IntArray = np.zeros(len(self._points), dtype=np.int64)
+        self._degrees, self._part, self._iterations = 0.0, 0.0, 0
+        self._times = np.zeros(len(self._points), dtype=np.int64)
+        self.unfolding = False
 
     def set(self, degrees: float) -> None:
         """degrees: the least fold of a crease point while the paper is bent; 0 asks for none."""
@@ -39,16 +56,53 @@ class LeastFold(Pull):
         """off: by how much the flat sheet misses the handles, net units; 0 where nothing has to bend."""
         self._part = min(off / (_WHOLE * self._size), 1.0)
 
+    def start_anew(self) -> None:
+        """The sheet is flat once more."""
+        self._times = np.zeros(len(self._points), dtype=np.int64)
+
     def release(self, points: BoolArray) -> bool:
         """Driven points (n,) that something else turns. Whether that is new."""
         changed = not np.array_equal(points, self._released)
         self._released = points
-        return changed and bool(self.terms())
+        return changed
+
+    def begin(self, x: FloatArray) -> None:
+        self._look(x)
+
+    def keep_up(self, x: FloatArray) -> bool:
+        """Before every step: follow the side that each crease takes. Whether any value has changed."""
+        self._iterations += 1
+        return self._iterations % _LOOK_EVERY == 1 and self._look(x)
 
     def terms(self) -> list[Term]:
-        degrees = self._degrees * self._part
-        if degrees == 0 or self._weight == 0:
+        if self._weight == 0 or len(self._points) == 0:
             return []
-        weight = np.where(self._released, 0.0, self._weight)
-        term = fold_angle(self._net, np.full(self._count, degrees), weight)
-        return [replace(term, least=True, name="least fold")]
+        degrees = np.maximum(self._degrees * self._part, _FAINT * self._times)
+        idle = self._released | (degrees == 0) | self.unfolding
+        half = self._side * np.sin(np.radians(0.5 * degrees))
+        weight = np.where(idle | (self._side == 0), 0.0, self._weight * _HARDER**self._times)
+        return [replace(self._term, half=half, side=self._side, weight=weight)]
+
+    def settle(self, x: FloatArray) -> bool:
+        """Harder at points that rest flat, or on the other side than their crease."""
+        if self.unfolding or self._weight == 0 or off_plane(x) <= FLAT:
+            return False
+        flat = ~measure(self._net, self._net.frame.to_drawing(x)).folded[self._points]
+        flat &= ~self._released & (self._times < _MOST_HARDER)
+        if not flat.any():
+            return False
+        self._look(x)
+        self._times = self._times + flat
+        return True
+
+    def undone(self, x: FloatArray) -> bool:
+        return self.settle(x)
+
+    def _look(self, x: FloatArray) -> bool:
+        """Take the side of each chain of points; whether any is new."""
+        half = self._term.half_angles(gather(np.ascontiguousarray(x.T), self._term.stencil))
+        total = np.bincount(self._chain, half, minlength=len(self._net.chain_crease))
+        side = np.sign(total).astype(np.int64)[self._chain]
+        changed = not np.array_equal(side, self._side)
+        self._side = side
+        return changed
