@@ -25,9 +25,9 @@ MAX_MEAN_STRETCH, MAX_STRETCH_99, MAX_STRETCH = 0.003, 0.01, 0.05
 MAX_ANGLE_GAP = 0.05
 #: Gap between two copies of one point, mean grid edges: mean, and largest.
 MAX_MEAN_GAP, MAX_GAP = 3e-3, 2e-2
-#: A crease point folded by less than this is flat, degrees: half of what counts as folded (solver/measurement.py), since
-#: the angle is seen more roughly here.
-FLAT = 0.25
+#: A crease point folded by less than this is flat, degrees. What counts as folded is more (solver/measurement.py), but
+#: the angle is seen more roughly here: at the tips of creases the two differ by some tenths.
+FLAT = 0.05
 #: A quad keeps its area within these parts, and no corner of it turns over.
 LEAST_AREA, MOST_AREA = 0.6, 1.5
 #: Quads that share an edge inside a patch turn by less than this, degrees: more is paper doubled over.

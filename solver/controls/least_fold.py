@@ -27,7 +27,7 @@ _WHOLE = 0.05
 #: The sides are looked at every so many iterations.
 _LOOK_EVERY = 10
 #: Points that rest flat are asked for so much more fold each time, degrees, and so many times harder, at most so often.
-_FAINT, _HARDER, _MOST_HARDER = 2.0, 8.0, 5
+_FAINT, _HARDER, _MOST_HARDER = 2.0, 8.0, 8
 
 
 class LeastFold(Pull):
@@ -96,6 +96,9 @@ class LeastFold(Pull):
         return True
 
     def undone(self, x: FloatArray) -> bool:
+        return self.settle(x)
+
+    def share(self, x: FloatArray) -> bool:
         return self.settle(x)
 
     def _look(self, x: FloatArray) -> bool:
