@@ -1,7 +1,7 @@
 """Straight crease patterns with mountains and valleys drawn, as origami tessellations and bases are.
 
-Each is lines (letter, start, end) on a sheet, drawing units; ``svg`` writes them as most programs do: a red mountain,
-a blue valley, the border black.
+Each is lines (letter, start, end) on a sheet, drawing units; ``svg`` writes them as most programs do: a red
+mountain, a blue valley, the border black.
 """
 
 from __future__ import annotations
@@ -143,8 +143,7 @@ def all_patterns() -> Sequence[StraightPattern]:
 
 
 def _to_border(point: Point, along: Point) -> Point:
-    ways = [(side - p) / d for p, d, side in zip(point, along, (100.0 if d > 0 else 0.0 for d in along), strict=True)
-            if d]  # fmt: skip
+    ways = [((100.0 if d > 0 else 0.0) - p) / d for p, d in zip(point, along, strict=True) if d]
     return point[0] + ways[0] * along[0], point[1] + ways[0] * along[1]
 
 

@@ -236,6 +236,8 @@ WEIGHTS = (
     ("continuity", "Hold Together", "How tightly the pieces between the creases are joined"),
     ("handles", "Pull of Handles", "How hard handles pull"),
     ("fold_angle", "Pull of Angles", "How hard creases are driven to their fold angles"),
+    ("drive", "Fold", "How hard the Fold slider pulls all creases"),
+    ("least_fold", "Least Fold", "How hard creases are pulled to their least fold beside handles"),
     ("fold_condition", "Keep Folded", "How hard creases are kept folded along all of their length"),
     ("sides", "Pull of Sides", "How hard creases are held to valley and mountain"),
     ("pairs", "Pull of Joints", "How hard joined points and glued borders are drawn together"),

@@ -238,6 +238,7 @@ class HandlesPanel(PaperPanel, bpy.types.Panel):
         column = row.column(align=True)
         column.operator("curvefold.remove_handle", text="", icon="REMOVE")
         column.operator("curvefold.pin", text="", icon="PINNED")
+        layout.prop(settings, "least_fold", slider=True)
         chosen = settings.chosen_handle
         if chosen >= len(settings.handles):
             return

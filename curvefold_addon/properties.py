@@ -20,6 +20,7 @@ from bpy.props import (
     StringProperty,
 )
 
+from ..solver.description import LEAST_FOLD
 from . import control_properties, handle_choice, live, shown_drawing
 from .control_properties import SIDES, CreaseSettings, JointSettings, PointAngleSettings, WeightSettings, wake
 from .resolution_property import resolution_property
@@ -140,6 +141,16 @@ class PaperSettings(bpy.types.PropertyGroup):
         description="The fold angle at 100 %",
         subtype="ANGLE",
         default=radians(90.0),
+        min=0.0,
+        max=pi,
+        update=wake,
+    )
+    least_fold: FloatProperty(
+        name="Least Fold",
+        description="Where handles alone bend the paper, every crease is folded at least so far, "
+        "softly enough that handles stay where they are; at zero, handles may leave creases flat",
+        subtype="ANGLE",
+        default=radians(LEAST_FOLD),
         min=0.0,
         max=pi,
         update=wake,

@@ -57,6 +57,11 @@ def add_fold_arguments(parser: argparse.ArgumentParser) -> None:
         help="fold every crease to this angle (default 60 without handles, no drive with them)",
     )  # fmt: skip
     parser.add_argument(
+        "--least-fold", type=float, default=None, metavar="DEG",
+        help="with handles alone, fold every crease at least so far; 0 leaves creases to the handles "
+        f"(default {default.least_fold:g})",
+    )  # fmt: skip
+    parser.add_argument(
         "--assignments", choices=("free", "bind"), default=None,
         help=f"whether the drawing's mountains and valleys bind the fold (default {default.assignments})",
     )  # fmt: skip
@@ -107,7 +112,13 @@ def description_of(args: argparse.Namespace) -> FoldDescription:
         given["handles"] = read_handles(args.handles)
         if not args.description:
             given["angle"] = None
-    for option, name in (("resolution",) * 2, ("vertices", "max_vertices"), ("angle",) * 2, ("assignments",) * 2):
+    for option, name in (
+        ("resolution",) * 2,
+        ("vertices", "max_vertices"),
+        ("angle",) * 2,
+        ("least_fold",) * 2,
+        ("assignments",) * 2,
+    ):
         if getattr(args, option) is not None:
             given[name] = getattr(args, option)
     return replace(told, **given)

@@ -84,8 +84,8 @@ def quad_normals(quads: IntArray, x: FloatArray) -> FloatArray:
 def gauss_area(net: PiecewiseDog, positions: ArrayLike) -> float:
     """How much area the Gauss image of positions (V,3) covers, steradians: none of smooth paper, more of ripples.
 
-    The unsigned areas that the normals of the four quads around each inner vertex span on the sphere, summed: the total
-    absolute curvature, which bent paper has none of. Raises ValueError for another shape.
+    The unsigned areas that the normals of the four quads around each inner vertex span on the sphere, summed: the
+    total absolute curvature, which bent paper has none of. Raises ValueError for another shape.
     """
     x = frozen_array(positions, np.float64, (len(net.rest), 3), "positions")
     normals = quad_normals(net.quads, x)[_quads_around(net)]

@@ -18,15 +18,17 @@ from numpy.typing import ArrayLike
 from .arrays import FloatArray, IntArray, frozen_array
 from .net.piecewise_dog import PiecewiseDog
 
-#: Relative change of the net's edge lengths: mean (paper, section 6.1), all but a hundredth of the edges, and a single
-#: edge. At a point handle or a crease vertex one edge takes what the sheet around it cannot (docs/reliability.md).
+#: Relative change of the net's edge lengths: mean (paper, section 6.1), all but a hundredth of the edges, and a
+#: single edge. At a point handle or a crease vertex one edge takes what the sheet around it cannot
+#: (docs/reliability.md).
 MAX_MEAN_STRETCH, MAX_STRETCH_99, MAX_STRETCH = 0.003, 0.01, 0.05
 #: Largest difference of two angles that a DOG holds equal, degrees.
 MAX_ANGLE_GAP = 0.05
 #: Gap between two copies of one point, mean grid edges: mean, and largest.
 MAX_MEAN_GAP, MAX_GAP = 3e-3, 2e-2
-#: A crease point folded by less than this is flat, degrees. What counts as folded is more (solver/measurement.py), but
-#: the angle is seen more roughly here: at the tips of creases the two differ by some tenths.
+#: A crease point folded by less than this is flat, degrees. What counts as folded is more
+#: (solver/measurement.py), but the angle is seen more roughly here: at the tips of creases the two differ by some
+#: tenths.
 FLAT = 0.05
 #: A quad keeps its area within these parts, and no corner of it turns over.
 LEAST_AREA, MOST_AREA = 0.6, 1.5
@@ -139,8 +141,8 @@ class _Check:
         self.figures["stretch_99"] = most
         if not most <= MAX_STRETCH_99:
             worst = int(np.argmax(change))
-            sentence = f"a hundredth of the edges is stretched by more than {most:.1%}, over {MAX_STRETCH_99:.0%}, most"
-            self.fault("isometry", sentence, places[worst])
+            sentence = f"a hundredth of the edges is stretched by more than {most:.1%}, over {MAX_STRETCH_99:.0%}"
+            self.fault("isometry", f"{sentence}, most", places[worst])
         self._bound("isometry", "stretch_max", change, MAX_STRETCH, places,
                     "an edge is stretched by {value:.1%}, over {bound:.0%}")  # fmt: skip
 

@@ -10,7 +10,7 @@ from zlib import crc32
 
 from ...solver import Amount, Angle, Curve, CurvefoldError, Glue, Keep, Pair, Side, Weights
 from ...solver.controls.control import Control
-from ...solver.description import MOST_WEIGHT
+from ...solver.description import LEAST_FOLD, MOST_WEIGHT
 
 Point = tuple[float, float]
 Place = tuple[float, float, float]
@@ -38,13 +38,14 @@ class DrawnCrease:
 @dataclass(frozen=True)
 class Told:
     """angle: degrees all creases are driven to, None without a drive; controls, and for each what the user calls
-    it; weights; faults: why others do not act, one sentence each.
+    it; weights; least_fold, degrees; faults: why others do not act, one sentence each.
     """
 
     angle: float | None
     controls: tuple[Control, ...] = ()
     names: tuple[str, ...] = ()
     weights: Weights = USUAL
+    least_fold: float = LEAST_FOLD
     faults: tuple[str, ...] = ()
 
 
@@ -112,6 +113,7 @@ def told(settings: Any, values: Any, held: bool, drawn: Sequence[DrawnCrease], t
         tuple(gathering.controls),
         tuple(gathering.names),
         weights_of(settings.weights),
+        math.degrees(values.least_fold),
         tuple(gathering.faults),
     )
 
@@ -241,9 +243,9 @@ def in_users_words(sentence: str, labels: Sequence[str]) -> str:
     return sentence
 
 
-def numbers_of(controls: Sequence[Control], weights: Weights) -> list[float]:
-    """Controls and weights as numbers that are equal for equal ones."""
-    result: list[float] = []
+def numbers_of(controls: Sequence[Control], weights: Weights, least_fold: float) -> list[float]:
+    """Controls, weights and the least fold, degrees, as numbers that are equal for equal ones."""
+    result: list[float] = [least_fold]
     for control in controls:
         result.append(_of_word(control.kind))
         for entry in fields(control):

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ...solver import Amount, Handle, Keep, Weights
 from ...solver.controls.control import Control
+from ...solver.description import LEAST_FOLD
 from . import controls as crease_controls
 from .curve_targets import target_points
 
@@ -36,6 +37,7 @@ class Inputs:
 
     handles that act, in the paper's units, and their indices in the paper's settings
     controls: all else that is asked, and names: what the user calls each of them; weights: of the solver's terms
+    least_fold: degrees by which creases fold at least where handles alone bend the paper
     faults: why others do not act, one sentence each
     """
 
@@ -46,6 +48,7 @@ class Inputs:
     controls: tuple[Control, ...] = ()
     names: tuple[str, ...] = ()
     weights: Weights = crease_controls.USUAL
+    least_fold: float = LEAST_FOLD
 
     @property
     def asks(self) -> bool:
@@ -61,7 +64,7 @@ class Inputs:
         """(2 + C + 9H,) angle (NaN for None), C and the numbers of the controls and weights, then at, target, axes
         and strength of each handle.
         """
-        asked = crease_controls.numbers_of(self.controls, self.weights)
+        asked = crease_controls.numbers_of(self.controls, self.weights, self.least_fold)
         values = [math.nan if self.angle is None else self.angle, float(len(asked)), *asked]
         for handle in self.handles:
             values += [*handle.at, *handle.target, *map(float, handle.axes), handle.strength]
@@ -146,7 +149,16 @@ def with_controls(
 ) -> Inputs:
     """What a paper with such settings, kept and evaluated, and such handles is told."""
     told = crease_controls.told(settings, values, bool(handles), drawn, target)
-    return Inputs(told.angle, handles, indices, (*faults, *told.faults), told.controls, told.names, told.weights)
+    return Inputs(
+        told.angle,
+        handles,
+        indices,
+        (*faults, *told.faults),
+        told.controls,
+        told.names,
+        told.weights,
+        told.least_fold,
+    )
 
 
 def handle_label(settings: Any, index: int) -> str:

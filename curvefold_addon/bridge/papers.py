@@ -57,6 +57,7 @@ def keep(paper: Any, result: FoldResult) -> None:
     if description.angle is not None:
         settings.angle = math.radians(description.angle)
         settings.fold = 100.0
+    settings.least_fold = math.radians(description.least_fold)
     for number, handle in enumerate(description.handles, 1):
         entry = settings.handles.add()
         entry.name = f"Handle {number}"

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ...solver.controls.pull import Lack
-from ...solver.drive import ANGLE_REACHED, MAX_MEAN_STRETCH
+from ...solver.drive import REACHED_PART, MAX_MEAN_STRETCH
 from ...solver.fold import fold_angle_quantiles
 from ...solver.folding import REACHED
 from ...solver.laid_flat import off_plane
@@ -148,7 +148,7 @@ def _standing(
     if depth:
         return "settled", depth[0]
     # What was found is not kept in a file: a paper that has not moved since it was opened shows how deep it is.
-    shallow = found.judgement is None and asked is not None and median < ANGLE_REACHED * asked
+    shallow = found.judgement is None and asked is not None and median < REACHED_PART * asked
     return "settled", f"settled at {median:.0f}° of {asked:.0f}°" if shallow and creases else "settled"
 
 

@@ -174,6 +174,8 @@ class Worker:
             model.set_handles(inputs.handles)
         if told is None or told.angle != inputs.angle:
             model.set_fold_angle(inputs.angle)
+        if told is None or told.least_fold != inputs.least_fold:
+            model.set_least_fold(inputs.least_fold)
         if told is None or told.controls != inputs.controls:
             self._refused = _set_controls(model, inputs)
         if self._anew:

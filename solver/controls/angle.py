@@ -10,8 +10,8 @@ import numpy as np
 
 from ..arrays import BoolArray, FloatArray, IntArray
 from ..drive import HALF_ANGLE, MEAN_BUDGET, mean_stretch
-from ..first_fold import FIRST_ANGLE
 from ..errors import DescriptionError
+from ..first_fold import FIRST_ANGLE
 from ..measurement import measure
 from ..net.piecewise_dog import PiecewiseDog
 from ..objectives.fold_angle import fold_angle_at

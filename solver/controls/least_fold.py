@@ -1,9 +1,9 @@
 """A soft torque that folds what nothing else folds, and never flattens a deeper fold.
 
-Flat is a resting place of a crease even where the paper around it bends. So while handles alone bend the paper, every
-crease point that is shallower than the least fold is pulled towards it, to the side to which most of its crease is
-folded, so softly that handles stay where they are. And whatever pulls: points that come to rest flat are pulled to a
-faint fold, harder and harder.
+Flat is a resting place of a crease even where the paper around it bends. So while handles alone bend the paper,
+every crease point that is shallower than the least fold is pulled towards it, to the side to which most of its
+crease is folded, so softly that handles stay where they are. And whatever pulls: points that come to rest flat
+are pulled to a faint fold, harder and harder.
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ from .pull import Pull, Term
 _WHOLE = 0.05
 #: The sides are looked at every so many iterations.
 _LOOK_EVERY = 10
-#: Points that rest flat are asked for so much more fold each time, degrees, and so many times harder, at most so often.
+#: Points that rest flat are asked for so much more fold each time, degrees, and so many times harder, at most so
+#: often.
 _FAINT, _HARDER, _MOST_HARDER = 2.0, 8.0, 8
 
 

@@ -77,7 +77,8 @@ class Pull:
         return False
 
     def aim(self, x: FloatArray) -> bool:
-        """Still in x, however soft the constraints: ask for more or less, so that what is measured is what was asked.
+        """Still in x, however soft the constraints: ask for more or less, so that what is measured is what was
+        asked.
 
         Whether any value has changed.
         """
