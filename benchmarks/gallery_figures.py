@@ -24,6 +24,7 @@ from solver import (
 )
 from solver.arrays import FloatArray
 from solver.controls.control import Control
+from solver.description import LEAST_FOLD
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,9 +118,10 @@ def _told(
     angle: float | None = None,
     handles: tuple[Handle, ...] = (),
     weights: Weights | None = None,
+    least_fold: float = LEAST_FOLD,
 ) -> FoldDescription:
     return FoldDescription(
-        resolution=resolution, angle=angle, handles=handles, controls=controls, weights=weights or Weights()
+        resolution, angle, handles, weights=weights or Weights(), controls=controls, least_fold=least_fold
     )
 
 
@@ -173,7 +175,7 @@ def _with_and_without() -> tuple[Figure, ...]:
             result.append(
                 Figure(
                     "3", f"{name}_{'with' if condition else 'without'}", words, drawing,
-                    _told(handles=_pinch(inwards[name], 0.12), weights=Weights(fold_condition=float(condition))),
+                    _told(handles=_pinch(inwards[name], 0.12), weights=Weights(fold_condition=float(condition)), least_fold=0.0),
                     fast=name == "arc", bars=condition,
                 )
             )  # fmt: skip

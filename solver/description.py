@@ -77,7 +77,7 @@ class Weights:
     isometry: float = 20000.0
     continuity: float = 1e4
     handles: float = 5.0
-    drive: float = 1.0
+    drive: float = 3.0
     least_fold: float = 0.1
     fold_angle: float = 100.0
     fold_condition: float = 1.0

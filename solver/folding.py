@@ -488,8 +488,11 @@ class FoldModel:
         """At rest: whether some pull gives way or pulls harder now, the paper only when all others do not."""
         x = self._state.x
         changed: list[Pull] = [pull for pull in self._pulls() if pull is not self._paper and pull.settle(x)]
-        if not changed and self._wanting(x) and self._paper.settle(x):
-            changed.append(self._paper)
+        if not changed and self._wanting(x):
+            if self._least.give_way():
+                changed.append(self._least)
+            elif self._paper.settle(x):
+                changed.append(self._paper)
         for pull in changed:
             self._replace(problem, pull)
         return bool(changed)

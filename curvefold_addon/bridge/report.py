@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ...solver.controls.pull import Lack
-from ...solver.drive import REACHED_PART, MAX_MEAN_STRETCH
+from ...solver.drive import MAX_MEAN_STRETCH, REACHED_PART
 from ...solver.fold import fold_angle_quantiles
 from ...solver.folding import REACHED
 from ...solver.laid_flat import off_plane

@@ -61,6 +61,11 @@ class LeastFold(Pull):
         """The sheet is flat once more."""
         self._times = np.zeros(len(self._points), dtype=np.int64)
 
+    def give_way(self) -> bool:
+        """Ask only for faint folds until handles are told anew: they are missed. Whether that is new."""
+        given, self._part = self._part, 0.0
+        return given > 0.0
+
     def release(self, points: BoolArray) -> bool:
         """Driven points (n,) that something else turns. Whether that is new."""
         changed = not np.array_equal(points, self._released)
@@ -86,21 +91,28 @@ class LeastFold(Pull):
 
     def settle(self, x: FloatArray) -> bool:
         """Harder at points that rest flat, or on the other side than their crease."""
-        if self.unfolding or self._weight == 0 or off_plane(x) <= FLAT:
-            return False
-        flat = ~measure(self._net, self._net.frame.to_drawing(x)).folded[self._points]
-        flat &= ~self._released & (self._times < _MOST_HARDER)
+        flat = self._flat(x) & (self._times < _MOST_HARDER)
         if not flat.any():
             return False
         self._look(x)
         self._times = self._times + flat
         return True
 
+    def missed(self, x: FloatArray) -> int:
+        return int(self._flat(x).sum())
+
     def undone(self, x: FloatArray) -> bool:
         return self.settle(x)
 
     def share(self, x: FloatArray) -> bool:
         return self.settle(x)
+
+    def _flat(self, x: FloatArray) -> BoolArray:
+        """(n,) which points are not folded though the paper is bent; none while it unfolds."""
+        if self.unfolding or self._weight == 0 or off_plane(x) <= FLAT:
+            return np.zeros(len(self._points), dtype=bool)
+        folded = measure(self._net, self._net.frame.to_drawing(x)).folded[self._points]
+        return np.asarray(~folded & ~self._released)
 
     def _look(self, x: FloatArray) -> bool:
         """Take the side of each chain of points; whether any is new."""

@@ -9,9 +9,9 @@ import pytest
 
 import solver
 from solver import finishing
-from solver.drive import present_angles
 from solver.laid_flat import off_plane
 from solver.optimize.sqp import projection_step
+from tests.solver.crease_medians import crease_medians
 
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_patterns"
 
@@ -81,8 +81,8 @@ def test_a_paper_that_is_settled_again_keeps_its_shape(name: str) -> None:
     shapes = [model._state.x[some] for model in (first, again)]
     apart = [np.linalg.norm(x[:, None] - x[None], axis=2) for x in shapes]
     assert np.abs(apart[0] - apart[1]).max() < 1e-3, "grid edges"
-    assert present_angles(first.net, again._state.x) == pytest.approx(
-        present_angles(first.net, first._state.x), abs=0.05
+    assert crease_medians(first.net, again._state.x) == pytest.approx(
+        crease_medians(first.net, first._state.x), abs=0.05
     )
 
 

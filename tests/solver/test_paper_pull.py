@@ -14,10 +14,11 @@ from solver import finishing
 from solver.controls.condition_pull import ConditionPull
 from solver.controls.firmness import Firmness
 from solver.controls.paper_pull import PaperPull
-from solver.drive import edge_stretch, present_angles
+from solver.drive import edge_stretch
 from solver.errors import NotPositiveDefiniteError
 from solver.objectives.continuity import gaps
 from solver.resting import RestingShape, RestMerit, best
+from tests.solver.crease_medians import crease_medians
 
 SAMPLES = Path(__file__).parents[2] / "sample_patterns"
 
@@ -135,7 +136,7 @@ def test_a_fold_does_not_give_up_depth_for_calm(monkeypatch: pytest.MonkeyPatch,
             patch.setattr(finishing, "_MOST_SHARINGS", 0)
             before = driven(pattern, resolution, degrees)
         assert model._paper.peak(model._state.x) > 4.0, "or this test says nothing"
-        angles = [present_angles(m.net, m._state.x) for m in (model, before)]
+        angles = [crease_medians(m.net, m._state.x) for m in (model, before)]
         assert (angles[0] > 0.9 * angles[1]).all()
         assert solver.verify(model.net, model.positions).ok
 
