@@ -26,6 +26,8 @@ SHAREABLE_STRETCH = 1.1 * MAX_MEAN_STRETCH
 HALF_ANGLE = 4.0
 #: The creases have come to the asked angle when their median is this part of it.
 REACHED_PART = 0.9
+#: A median that is this part of what was asked is not worth a harder pull, which ripples.
+_NEAR_PART = 0.94
 #: The median is what was asked within this, degrees; looked at so often at most.
 _AIMED, _MOST_AIMS = 0.5, 10
 #: The drive asks for at most this much more than it is set to, degrees.
@@ -93,7 +95,7 @@ class AngleDrive(Pull):
         self._aims += 1
         shift = float(np.clip(self._shift + short, -_MOST_SHIFT, _MOST_SHIFT))
         if short > (1.0 - _GAIN) * self._short or shift == self._shift:
-            near = short <= (1.0 - REACHED_PART) * self.angle
+            near = short <= (1.0 - _NEAR_PART) * self.angle
             if near or self._strength >= _HARDEST or mean_stretch(self._net, x) > MEAN_BUDGET:
                 return False
             self._strength *= _HARDER

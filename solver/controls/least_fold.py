@@ -46,8 +46,8 @@ class LeastFold(Pull):
         self._released = np.zeros(len(self._points), dtype=bool)
         self._side: IntArray = np.zeros(len(self._points), dtype=np.int64)
         self._degrees, self._part, self._iterations = 0.0, 0.0, 0
-        self._times = np.zeros(len(self._points), dtype=np.int64)
         self.unfolding = False
+        self.start_anew()
 
     def set(self, degrees: float) -> None:
         """degrees: the least fold of a crease point while the paper is bent; 0 asks for none."""
@@ -60,6 +60,7 @@ class LeastFold(Pull):
     def start_anew(self) -> None:
         """The sheet is flat once more."""
         self._times = np.zeros(len(self._points), dtype=np.int64)
+        self._left = np.zeros(len(self._points), dtype=bool)  # flat at the last look
 
     def give_way(self) -> bool:
         """Ask only for faint folds until handles are told anew: they are missed. Whether that is new."""
@@ -76,9 +77,23 @@ class LeastFold(Pull):
         self._look(x)
 
     def keep_up(self, x: FloatArray) -> bool:
-        """Before every step: follow the side that each crease takes. Whether any value has changed."""
+        """Before every step: follow the side that each crease takes, and fold what a drag leaves flat on its way.
+
+        Whether any value has changed.
+        """
         self._iterations += 1
-        return self._iterations % _LOOK_EVERY == 1 and self._look(x)
+        if self._iterations % _LOOK_EVERY != 1:
+            return False
+        sided = self._look(x)
+        if self._degrees * self._part < _FAINT:
+            self._left = np.zeros_like(self._left)
+            return sided
+        flat = self._flat(x)
+        # Twice in a row: a point that passes through flat folds by itself.
+        staying = flat & self._left & (self._times < _MOST_HARDER)
+        self._left = flat
+        self._times = self._times + staying
+        return sided or bool(staying.any())
 
     def terms(self) -> list[Term]:
         if self._weight == 0 or len(self._points) == 0:
