@@ -7,7 +7,7 @@ from collections.abc import Callable
 import bpy
 from bpy.app.handlers import persistent
 
-from . import drawing_tool, later_work, live
+from . import drawing_tool, film, later_work, live
 
 _said: set[str] = set()
 
@@ -30,13 +30,13 @@ def _quiet(handler: Callable[..., None]) -> Callable[..., None]:
 
 @_quiet
 def depsgraph_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    live.notice([update.id for update in depsgraph.updates])
+    live.notice(scene, [update.id for update in depsgraph.updates])
     drawing_tool.look()
 
 
 @_quiet
 def frame_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    live.frame_changed(scene, depsgraph)
+    film.frame_changed(scene, depsgraph)
 
 
 @_quiet

@@ -7,7 +7,7 @@ made again whenever it is missing. Nothing here needs a window: ``tick`` is call
 
 import time
 import traceback
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 
@@ -36,13 +36,12 @@ BY_HAND = "Its mesh was changed by hand: Restore the Paper throws that away, Mak
 
 @dataclass
 class _Watch:
-    """Who moves whom, by ``session_uid``. Objects are kept by name: references die on undo.
+    """Who moves whom in a scene, by ``session_uid``. Objects are kept by name: references die on undo.
 
     papers: mesh -> object that shows it; movers: object or mesh -> papers that follow it; drawings: part of a
     drawing -> papers that are folded from it; objects: how many the scene has.
     """
 
-    scene: str
     objects: int
     papers: dict[int, str] = field(default_factory=dict)
     movers: dict[int, set[int]] = field(default_factory=dict)
@@ -62,7 +61,8 @@ _stale: dict[int, float] = {}
 _faults: dict[int, str] = {}
 #: What went wrong with a paper that is not its user's fault; each is printed once.
 _broken: dict[int, str] = {}
-_watch: _Watch | None = None
+#: What is known of each scene, by its ``session_uid``.
+_watches: dict[int, _Watch] = {}
 _start_ticking: Callable[[], None] | None = None
 
 
@@ -97,7 +97,7 @@ def rehook(mesh: bpy.types.Mesh, handle: bpy.types.PropertyGroup) -> None:
     except (solver.CurvefoldError, state.StateError):
         return  # the report says that the handle is off the sheet, or the paper cannot be folded
     if handle.hook is not None:
-        place = hooks.offset_in(handle.hook, paper, bpy.context.evaluated_depsgraph_get(), place)
+        place = hooks.offset_in(handle.hook, paper, _evaluated(_scene_of(mesh)), place)
     handle.offset = place
 
 
@@ -288,12 +288,12 @@ def drop(mesh: bpy.types.Mesh) -> None:
 def sheet_here(settings: bpy.types.PropertyGroup) -> bpy.types.Object | None:
     """The sheet of a paper; None where it has none, and where that is not in the scene."""
     sheet = settings.sheet
-    return None if sheet is None or sheet.name not in bpy.context.scene.objects else sheet
+    return None if sheet is None or sheet.name not in _scene_of(settings.id_data).objects else sheet
 
 
 def paper_of(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
-    """The object of the scene that shows a paper: where hooks are, is seen from it."""
-    return _paper(mesh.session_uid)
+    """The object that shows a paper, in the present scene if there is one: where hooks are, is seen from it."""
+    return _paper(mesh.session_uid, _scenes())
 
 
 def active_paper(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -301,21 +301,23 @@ def active_paper(context: bpy.types.Context) -> bpy.types.Object | None:
     when it is a sheet or a crease; where nothing is active, the only one of the scene.
     """
     active = context.active_object
-    watch = _watched()
+    watch = _watched(context.scene)
     if active is None:
-        return _paper(next(iter(watch.papers))) if len(watch.papers) == 1 else None
+        return _paper(next(iter(watch.papers)), [context.scene]) if len(watch.papers) == 1 else None
     if papers.is_paper(active):
         return active
     if is_part(active) and (following := papers_on(sheet_of(active))):
         return following[0]
-    return next((_paper(uid) for uid in sorted(watch.movers.get(active.session_uid, ()))), None)
+    followers = sorted(watch.movers.get(active.session_uid, ()))
+    return next((_paper(uid, [context.scene]) for uid in followers), None)
 
 
 def papers_on(sheet: bpy.types.Object | None) -> list[bpy.types.Object]:
     """The papers of the scene that follow a sheet's drawing, by name."""
     if sheet is None:
         return []
-    found = [_paper(uid) for uid in tuple(_watched().drawings.get(sheet.session_uid, ()))]
+    scene = bpy.context.scene
+    found = [_paper(uid, [scene]) for uid in tuple(_watched(scene).drawings.get(sheet.session_uid, ()))]
     return sorted((paper for paper in found if paper is not None), key=lambda paper: paper.name)
 
 
@@ -332,14 +334,14 @@ def is_at_work() -> bool:
 # --- what handlers and the following operator call ---------------------------------------------------------------
 
 
-def notice(changed: Iterable[bpy.types.ID]) -> None:
-    """Datablocks have changed: wakes the papers that follow them."""
-    watch = _watched()
+def notice(scene: bpy.types.Scene, changed: Iterable[bpy.types.ID]) -> None:
+    """Datablocks have changed as a scene shows them: wakes its papers that follow them."""
+    watch = _watched(scene)
     roused = set()
-    if watch.objects != len(bpy.context.scene.objects):
+    if watch.objects != len(scene.objects):
         # Something was added or removed: a hook, perhaps.
         _look_again()
-        watch = _watched()
+        watch = _watched(scene)
         roused.update(watch.papers)
     for datablock in changed:
         uid = datablock.original.session_uid
@@ -373,16 +375,29 @@ def tick(budget: float, transforming: bool = False) -> bool:
     return bool(_awake)
 
 
-def frame_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """A frame of an animation: papers with animated hooks take their iterations, whatever the clock says."""
-    for uid in list(_watched().papers):
-        paper = _paper(uid)
-        if paper is None or not _may_move(paper) or not hooks.is_animated(paper):
-            continue
-        try:
-            _follow_frame(paper, scene, depsgraph)
-        except (solver.CurvefoldError, state.StateError) as error:
-            _faults[uid] = str(error)  # the other papers go on
+def animated_papers(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> list[bpy.types.Object]:
+    """The papers of a scene that follow its frames, as far as the evaluated scene has them."""
+    found = [_paper(uid, [scene]) for uid in list(_watched(scene).papers)]
+    return [
+        paper
+        for paper in found
+        if paper is not None
+        and _may_move(paper)
+        and hooks.is_animated(paper)
+        and paper.evaluated_get(depsgraph).is_evaluated
+    ]
+
+
+def read_inputs(
+    paper: bpy.types.Object, found: Session, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
+) -> hooks.Inputs:
+    """What a paper is told in an evaluated scene."""
+    return hooks.read(paper, scene, depsgraph, found.net.frame.unit, found.why_not_at, found.drawn)
+
+
+def note_fault(mesh: bpy.types.Mesh, fault: str) -> None:
+    """Why a paper cannot be folded as it is now."""
+    _faults[mesh.session_uid] = fault
 
 
 def park() -> None:
@@ -396,11 +411,11 @@ def park() -> None:
     _broken.clear()
     _look_again()
     _awake.clear()
-    for uid in list(_watched().papers):
-        paper = _paper(uid)
+    for uid in _shown_papers():
+        paper = _paper(uid, _shown_scenes())
         if paper is not None:
             paper.update_tag()  # Blender does not see that its scale was changed after the step was written
-    _rouse(set(_watched().papers))
+    _rouse(_shown_papers())
 
 
 def forget() -> None:
@@ -419,7 +434,7 @@ def forget() -> None:
 
 def wake_all() -> None:
     """Every live paper looks whether it has something to do."""
-    _rouse(set(_watched().papers))
+    _rouse(_shown_papers())
 
 
 def on_start(start: Callable[[], None] | None) -> None:
@@ -439,20 +454,52 @@ def _rouse(papers: set[int]) -> None:
 
 
 def _look_again() -> None:
-    global _watch
-    _watch = None
+    _watches.clear()
 
 
-def _watched() -> _Watch:
-    global _watch
-    scene = bpy.context.scene
-    if _watch is None or _watch.scene != scene.name:
-        _watch = _look(scene)
-    return _watch
+def _watched(scene: bpy.types.Scene) -> _Watch:
+    uid = scene.session_uid
+    if uid not in _watches:
+        _watches[uid] = _look(scene)
+    return _watches[uid]
+
+
+def _shown_scenes() -> list[bpy.types.Scene]:
+    """The present scene, and those that other windows show."""
+    shown = [bpy.context.scene]
+    for manager in bpy.data.window_managers:
+        shown += [window.scene for window in manager.windows if window.scene not in shown]
+    return shown
+
+
+def _scenes() -> list[bpy.types.Scene]:
+    """All scenes, those that are shown first."""
+    shown = _shown_scenes()
+    return [*shown, *(scene for scene in bpy.data.scenes if scene not in shown)]
+
+
+def _shown_papers() -> set[int]:
+    return {uid for scene in _shown_scenes() for uid in _watched(scene).papers}
+
+
+def _scene_of(mesh: bpy.types.Mesh) -> bpy.types.Scene:
+    """The scene in which a paper follows what it is told."""
+    uid = mesh.session_uid
+    return next((scene for scene in _scenes() if uid in _watched(scene).papers), bpy.context.scene)
+
+
+def _evaluated(scene: bpy.types.Scene) -> bpy.types.Depsgraph:
+    """A scene as it is shown, up to date."""
+    if scene == bpy.context.scene:
+        return bpy.context.evaluated_depsgraph_get()
+    windows = (window for manager in bpy.data.window_managers for window in manager.windows)
+    layer = next((window.view_layer for window in windows if window.scene == scene), scene.view_layers[0])
+    layer.update()
+    return layer.depsgraph
 
 
 def _look(scene: bpy.types.Scene) -> _Watch:
-    watch = _Watch(scene.name, len(scene.objects))
+    watch = _Watch(len(scene.objects))
     known = {mesh.session_uid for mesh in bpy.data.meshes if mesh.curvefold.is_paper}
     if not known:
         return watch
@@ -473,17 +520,23 @@ def _look(scene: bpy.types.Scene) -> _Watch:
     return watch
 
 
-def _paper(uid: int) -> bpy.types.Object | None:
+def _paper(uid: int, scenes: Sequence[bpy.types.Scene]) -> bpy.types.Object | None:
+    """The object that shows a paper, in the first of the scenes that has one."""
     for _ in range(2):
-        name = _watched().papers.get(uid)
-        paper = None if name is None else bpy.context.scene.objects.get(name)
-        if paper is not None and paper.type == "MESH" and paper.data.session_uid == uid:
-            return paper
+        for scene in scenes:
+            name = _watched(scene).papers.get(uid)
+            paper = None if name is None else scene.objects.get(name)
+            if paper is not None and paper.type == "MESH" and paper.data.session_uid == uid:
+                return paper
         _look_again()  # renamed, removed, or made since
-    if name is None:
-        return None
     # What is linked may have the same name.
-    meshes = (thing for thing in bpy.context.scene.objects if thing.type == "MESH")
+    meshes = (
+        thing
+        for scene in scenes
+        if uid in _watched(scene).papers
+        for thing in scene.objects
+        if thing.type == "MESH"
+    )
     return next((thing for thing in meshes if thing.data.session_uid == uid), None)
 
 
@@ -495,9 +548,8 @@ def _may_move(paper: bpy.types.Object) -> bool:
 
 
 def _inputs(paper: bpy.types.Object, found: Session) -> hooks.Inputs:
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    scene = bpy.context.scene
-    return hooks.read(paper, scene, depsgraph, found.net.frame.unit, found.why_not_at, found.drawn)
+    scene = _scene_of(paper.data)
+    return read_inputs(paper, found, scene, _evaluated(scene))
 
 
 def _wanted_source(mesh: bpy.types.Mesh) -> state.Source:
@@ -576,28 +628,9 @@ def _take(paper: bpy.types.Object, made: Session) -> None:
     made.take_up(_inputs(paper, made))
 
 
-def _follow_frame(paper: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    found = make_session(paper)
-    before, found.frame = found.frame, scene.frame_current
-    inputs = hooks.read(paper, scene, depsgraph, found.net.frame.unit, found.why_not_at, found.drawn)
-    step = 0 if before is None else scene.frame_current - before
-    if scene.frame_current == scene.frame_start:
-        found.start_anew(inputs, SETTLING)
-    elif 0 < step <= max(1, scene.frame_step):
-        found.advance(inputs, step * paper.data.curvefold.iterations_per_frame)
-    elif bpy.app.background:
-        found.advance(inputs, SETTLING)
-    else:
-        _rouse({paper.data.session_uid})
-        return
-    found.write(paper.data)
-    kept_rulings.keep(paper.data, found)
-    found.before = None
-
-
 def _follow(uid: int, deadline: float, transforming: bool) -> bool:
     """Works on one paper until the clock says ``deadline``; whether it has more to do."""
-    paper = _paper(uid)
+    paper = _paper(uid, _shown_scenes())
     # Leaving another mode is a change, and wakes it again.
     if paper is None or not _may_move(paper) or paper.mode != "OBJECT":
         return False

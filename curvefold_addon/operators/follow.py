@@ -23,6 +23,9 @@ SLOW_PART = 0.25
 #: Seconds in which a timer of a hundredth comes for certain, once Blender looks at events again.
 SWEEP = 0.05
 
+#: Seconds until it is looked again whether a picture is finished.
+AFTER_RENDER = 0.5
+
 _running = False
 _timer: bpy.types.Timer | None = None
 #: Whether no dead handler of this operator can be left in the window; the timer that sees to it.
@@ -101,6 +104,8 @@ def _begin() -> float | None:
     manager = bpy.context.window_manager
     if not live.is_at_work() or _running or not len(manager.windows):
         return None
+    if bpy.app.is_job_running("RENDER"):
+        return AFTER_RENDER
     # A timer has no window of its own.
     window = manager.windows[0]
     if not _is_swept(manager, window):
