@@ -511,8 +511,7 @@ def _look(scene: bpy.types.Scene) -> _Watch:
         watch.papers[uid] = paper.name
         settings = paper.data.curvefold
         movers = hooks.movers(settings)
-        shapes = [mover.data for mover in movers if mover.type == "CURVE"]
-        for mover in (paper, paper.data, *movers, *shapes):
+        for mover in (paper, paper.data, *movers, *hooks.shapes_of(movers)):
             watch.movers.setdefault(mover.session_uid, set()).add(uid)
         if settings.sheet is not None:
             for part in (settings.sheet, *creases_of(settings.sheet)):

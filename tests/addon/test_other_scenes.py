@@ -74,6 +74,7 @@ def test_a_scene_that_is_not_shown_renders_its_papers(hidden, tmp_path):
     finally:
         bpy.app.handlers.render_post.remove(rendered)
     assert seen == played
+    assert len(set(seen)) == 6
 
 
 def test_scenes_have_films_of_their_own(hidden, paper, live):
