@@ -388,6 +388,19 @@ def animated_papers(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> l
     ]
 
 
+def follow_frames(scene: bpy.types.Scene) -> bool:
+    """Whether some paper of a scene follows its frames."""
+    found = [_paper(uid, [scene]) for uid in list(_watched(scene).papers)]
+    return any(
+        paper is not None
+        and paper.data.curvefold.live
+        and paper.data.shape_keys is None
+        and linked.is_local(paper.data)
+        and hooks.is_animated(paper)
+        for paper in found
+    )
+
+
 def read_inputs(
     paper: bpy.types.Object, found: Session, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
 ) -> hooks.Inputs:
