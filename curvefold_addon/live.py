@@ -10,6 +10,8 @@ import traceback
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
 
 import bpy
 
@@ -20,7 +22,7 @@ from .bridge.drawing_objects import creases_of, is_part, sheet_of
 from .bridge.report import CreaseReport, Report, describe, describe_crease, describe_fault
 from .bridge.session import Session, carried_session, stored_session
 from .bridge.session import stop as stop_thread
-from .bridge.worker import pool
+from .bridge.turns import pool
 
 __all__ = ["CreaseReport", "Report", "rebuild", "report", "session", "settle", "wake"]
 
@@ -55,6 +57,10 @@ _parked: dict[int, Session] = {}
 _making: dict[int, Future[Session]] = {}
 #: Papers that may have something to do.
 _awake: set[int] = set()
+#: Papers that may have been told something since they were last read.
+_unread: set[int] = set()
+#: When each paper was last shown in a tick, on the clock of ticks.
+_shown: dict[int, float] = {}
 #: Papers whose drawing or resolution may have changed, and when.
 _stale: dict[int, float] = {}
 #: Why a paper cannot be folded as it is now.
@@ -278,10 +284,11 @@ def keep_shape(paper: bpy.types.Object) -> Callable[[], None]:
 def drop(mesh: bpy.types.Mesh) -> None:
     """A mesh is no paper any more: nothing is left of what was known about it."""
     uid = mesh.session_uid
-    for known in (_sessions, _parked, _making, _stale, _faults, _broken):
+    for known in (_sessions, _parked, _making, _stale, _shown, _faults, _broken):
         known.pop(uid, None)
     kept_rulings.drop(uid)
-    _awake.discard(uid)
+    for asleep in (_awake, _unread):
+        asleep.discard(uid)
     _look_again()
 
 
@@ -355,23 +362,28 @@ def notice(scene: bpy.types.Scene, changed: Iterable[bpy.types.ID]) -> None:
 def tick(budget: float, transforming: bool = False) -> bool:
     """Follows for ``budget`` seconds; whether there is more to do. Never raises.
 
+    Papers are told first, the thread has the time that is left, and then they show what it has found. Where that
+    takes longer than the budget, those that were not shown go first the next time, after the active one.
+
     transforming: whether the user holds something in the hand.
     """
-    deadline = time.perf_counter() + budget
-    waiting = sorted(_awake)
-    for done, uid in enumerate(waiting):
-        share = max(0.0, deadline - time.perf_counter()) / (len(waiting) - done)
-        try:
-            if not _follow(uid, time.perf_counter() + share, transforming):
-                _awake.discard(uid)
-        except (solver.CurvefoldError, state.StateError) as error:
-            _awake.discard(uid)
-            _faults[uid] = str(error)
-        except Exception as error:
-            _awake.discard(uid)
-            if _broken.get(uid) != repr(error):
-                _broken[uid] = repr(error)
-                traceback.print_exc()
+    begin = time.perf_counter()
+    deadline = begin + budget
+    waiting = _in_order()
+    told: list[_Told] = []
+    half = begin + 0.5 * budget
+    for place, uid in enumerate(waiting):
+        if place and time.perf_counter() > half:
+            break
+        if paper := _guarded(uid, partial(_tell, uid, place == 0, deadline, transforming)):
+            told.append(paper)
+    for paper in told:
+        _guarded(paper.uid, partial(paper.session.wait, deadline if len(told) == 1 else half))
+    for place, paper in enumerate(told):
+        if place and time.perf_counter() > deadline:
+            break
+        _shown[paper.uid] = begin
+        _guarded(paper.uid, partial(_show, paper, transforming))
     return bool(_awake)
 
 
@@ -441,6 +453,8 @@ def forget() -> None:
     _faults.clear()
     _broken.clear()
     _awake.clear()
+    _unread.clear()
+    _shown.clear()
     _look_again()
     stop_thread()
 
@@ -461,6 +475,7 @@ def on_start(start: Callable[[], None] | None) -> None:
 
 def _rouse(papers: set[int]) -> None:
     _awake.update(papers)
+    _unread.update(papers)
     # Without a window nothing ticks.
     if _awake and _start_ticking is not None and not bpy.app.background:
         _start_ticking()
@@ -640,41 +655,51 @@ def _take(paper: bpy.types.Object, made: Session) -> None:
     made.take_up(_inputs(paper, made))
 
 
-def _follow(uid: int, deadline: float, transforming: bool) -> bool:
-    """Works on one paper until the clock says ``deadline``; whether it has more to do."""
+@dataclass(frozen=True, eq=False)
+class _Told:
+    """A paper that was told what to do in a tick."""
+
+    uid: int
+    mesh: bpy.types.Mesh
+    session: Session
+    inputs: hooks.Inputs
+
+
+def _in_order() -> list[int]:
+    """Papers that may have something to do: the active one, then those that were shown longest ago."""
+    active = active_paper(bpy.context)
+    first = None if active is None else active.data.session_uid
+    return sorted(_awake, key=lambda uid: (uid != first, _shown.get(uid, 0.0), uid))
+
+
+def _guarded(uid: int, act: Callable[[], Any]) -> Any:
+    """What ``act`` returns; None when it raises, and then the paper sleeps and says why."""
+    try:
+        return act()
+    except (solver.CurvefoldError, state.StateError) as error:
+        _faults[uid] = str(error)
+    except Exception as error:
+        if _broken.get(uid) != repr(error):
+            _broken[uid] = repr(error)
+            traceback.print_exc()
+    _awake.discard(uid)
+    return None
+
+
+def _tell(uid: int, first: bool, deadline: float, transforming: bool) -> _Told | None:
+    """Tells a paper what its datablocks ask for now; None when it has nothing to show yet, or nothing to do."""
     paper = _paper(uid, _shown_scenes())
     # Leaving another mode is a change, and wakes it again.
     if paper is None or not _may_move(paper) or paper.mode != "OBJECT":
-        return False
+        _awake.discard(uid)
+        return None
     mesh = paper.data
     _note_scale(paper)
     if is_playing() and hooks.is_animated(paper):
-        return False  # frames count, not the clock; the end of the playback wakes it
-    if uid not in _making and uid not in _sessions:
-        shape = state.load(mesh)
-        parked = _unparked(uid, shape)
-        if parked is None:
-            _making[uid] = pool().submit(stored_session, shape)
-        else:
-            _take(paper, parked)
-    if uid in _making:
-        try:
-            made = _making[uid].result(timeout=max(0.0, deadline - time.perf_counter()))
-        except TimeoutError:
-            return True
-        except (solver.CurvefoldError, state.StateError) as error:
-            if uid not in _sessions:
-                raise
-            _faults[uid] = str(error)  # the drawing cannot be folded; the paper goes on as it was
-        else:
-            _faults.pop(uid, None)
-            if uid in _sessions:
-                adopt(paper, made)
-            else:
-                _take(paper, made)
-        finally:
-            if uid in _making and _making[uid].done():
-                del _making[uid]
+        _awake.discard(uid)
+        return None  # frames count, not the clock; the end of the playback wakes it
+    if not _is_made(paper, deadline if first else 0.0):
+        return None
     found = _sessions[uid]
     if uid in _stale and not transforming and time.monotonic() - _stale[uid] >= DRAWING_RESTS:
         del _stale[uid]
@@ -687,19 +712,65 @@ def _follow(uid: int, deadline: float, transforming: bool) -> bool:
             if not found.source.meets(wanted):
                 found.write(mesh)  # what undo may just have led to
                 _making[uid] = pool().submit(carried_session, wanted, found.snapshot())
-                return True
+                return None
             _faults.pop(uid, None)
             _follow_scale(paper)
-    inputs = _inputs(paper, found)
+    if uid in _unread or found.inputs is None:
+        inputs = _inputs(paper, found)
+        _unread.discard(uid)
+    else:
+        inputs = found.inputs
     if not transforming and found.is_back_at_start(inputs):
         found.return_to_start()
     else:
-        found.follow(inputs, deadline)
+        found.ask(inputs, first)
+    return _Told(uid, mesh, found, inputs)
+
+
+def _is_made(paper: bpy.types.Object, deadline: float) -> bool:
+    """Whether a paper has its session, new when it was made anew; waits for it until ``deadline``."""
+    mesh = paper.data
+    uid = mesh.session_uid
+    if uid not in _making and uid not in _sessions:
+        shape = state.load(mesh)
+        parked = _unparked(uid, shape)
+        if parked is None:
+            _making[uid] = pool().submit(stored_session, shape)
+        else:
+            _take(paper, parked)
+    if uid not in _making:
+        return True
+    try:
+        made = _making[uid].result(timeout=max(0.0, deadline - time.perf_counter()))
+    except TimeoutError:
+        return False
+    except (solver.CurvefoldError, state.StateError) as error:
+        if uid not in _sessions:
+            raise
+        _faults[uid] = str(error)  # the drawing cannot be folded; the paper goes on as it was
+    else:
+        _faults.pop(uid, None)
+        _unread.add(uid)
+        if uid in _sessions:
+            adopt(paper, made)
+        else:
+            _take(paper, made)
+    finally:
+        if uid in _making and _making[uid].done():
+            del _making[uid]
+    return True
+
+
+def _show(paper: _Told, transforming: bool) -> None:
+    """Shows what the thread has found; a paper that has no more to do sleeps."""
+    found, mesh = paper.session, paper.mesh
+    found.collect()
     found.write(mesh)
-    rests = found.rests_with(inputs)
+    rests = found.rests_with(paper.inputs)
     if rests and not transforming:
         found.before = None
-    if rests and not transforming and kept_rulings.find(mesh, found):
-        return True
+    more = rests and not transforming and kept_rulings.find(mesh, found)
     # A hand that holds still may yet be taken back.
-    return not rests or uid in _stale or (transforming and found.before is not None)
+    if more or not rests or paper.uid in _stale or (transforming and found.before is not None):
+        return
+    _awake.discard(paper.uid)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ...solver import Handle, HandleError, Measurement, PiecewiseDog, SqpReport, Status, measure
 from ...solver.controls.pull import Finding
 from ...solver.net.carry_over import carry_over
-from . import by_hand, mesh_attributes, nets, state, worker
+from . import by_hand, mesh_attributes, nets, state, turns
 from . import mesh as surface
 from .film import Film
 from .hooks import SAME_TARGET, WIDTH, Inputs, handles_begin, same
@@ -36,7 +36,7 @@ _versions = count()
 
 def stop() -> None:
     """Ends the thread and forgets what could be made again."""
-    worker.stop()
+    turns.stop()
     _ends.clear()
     nets.forget()
     by_hand.forget()
@@ -192,22 +192,30 @@ class Session:
 
     # --- moving ------------------------------------------------------------------------------------------
 
-    def follow(self, inputs: Inputs, deadline: float) -> None:
-        """Iterates until the clock (``time.perf_counter``) says ``deadline`` or the paper rests.
-
-        The thread goes on afterwards. Raises what went wrong in it.
-        """
+    def ask(self, inputs: Inputs, first: bool = False) -> None:
+        """Lets the thread iterate until the paper rests; before those of others, when it is the first."""
         self.inputs = inputs
         if self.rests_with(inputs):
             return
         self._stay()
         self._leave_rest()
-        self._worker.work(inputs, deadline)
-        self._take(self._worker.newest)
+        self._worker.ask(inputs, first)
+
+    def wait(self, deadline: float) -> None:
+        """Waits until the clock (``time.perf_counter``) says ``deadline`` or the thread has nothing to do.
+
+        Raises what went wrong in it.
+        """
+        self._worker.wait(deadline)
+
+    def collect(self) -> None:
+        """Takes over what the thread has found."""
+        if self.ahead is None:
+            self._take(self._worker.newest)
 
     def advance(self, inputs: Inputs, iterations: int) -> None:
         """Exactly so many iterations, fewer when the paper comes to rest. Blocking."""
-        if self._worker.is_running:
+        if self.ahead is None and (self._worker.is_running or self._worker.newest is not self._taken):
             # Where it stopped depends on the clock: from the shape that is shown, it does not.
             self._begin_at(self.positions)
         self._stay()
