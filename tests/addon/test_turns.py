@@ -133,7 +133,9 @@ def test_the_active_paper_goes_first(papers, live, active):
     bpy.context.view_layer.objects.active = papers[active]
     live.tick(0.0)
     found = [live.session(paper.data) for paper in papers]
-    assert [one.inputs is not None and one.inputs.angle == pytest.approx(36.0) for one in found].index(True) == active
+    assert [one.inputs is not None and one.inputs.angle == pytest.approx(36.0) for one in found].index(
+        True
+    ) == active
     assert live._in_order()[0] == papers[active].data.session_uid
 
 
