@@ -30,6 +30,8 @@ __all__ = ["CreaseReport", "Report", "rebuild", "report", "session", "settle", "
 DRAWING_RESTS = 0.25
 #: Iterations after which a fold that is waited for is left as it is.
 SETTLING = 1500
+#: Of a fold that is waited for it is said after every so many iterations how far it is.
+SAID_EVERY = 10
 #: Scales whose difference is a smaller part of them are the same: their rounding.
 SAME_SCALE = 1e-5
 #: What is said of a paper that does not follow, since following would write over what somebody did to its mesh.
@@ -107,8 +109,13 @@ def rehook(mesh: bpy.types.Mesh, handle: bpy.types.PropertyGroup) -> None:
     handle.offset = place
 
 
-def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
-    """Folds until the paper rests. Blocking. Raises CurvefoldError or StateError when it cannot be folded."""
+def settle(
+    mesh: bpy.types.Mesh, max_iterations: int = SETTLING, progress: Callable[[int], None] | None = None
+) -> None:
+    """Folds until the paper rests. Blocking. Raises CurvefoldError or StateError when it cannot be folded.
+
+    progress(iterations) is called every few iterations.
+    """
     paper = paper_of(mesh)
     if paper is None:
         return
@@ -123,7 +130,13 @@ def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
         found = carried_session(wanted, found.snapshot())
         adopt(paper, found)
     _faults.pop(uid, None)
-    found.advance(_inputs(paper, found), max_iterations)
+    inputs = _inputs(paper, found)
+    for done in range(0, max_iterations, SAID_EVERY):
+        found.advance(inputs, min(SAID_EVERY, max_iterations - done))
+        if found.rest is not None:
+            break
+        if progress is not None:
+            progress(done + SAID_EVERY)
     found.write(mesh)
     kept_rulings.keep(mesh, found)
     found.before = None
