@@ -75,7 +75,7 @@ static i64 best_level(void) { return 1; }
 #endif
 
 /* ABI number and the sizes of the structs, which Python compares with its own. */
-API void curvefold_layout(i64 layout[4]) {
+void curvefold_layout(i64 layout[4]) {
     layout[0] = CURVEFOLD_ABI;
     layout[1] = sizeof(Front);
     layout[2] = sizeof(Run);
@@ -84,12 +84,12 @@ API void curvefold_layout(i64 layout[4]) {
 
 /* The best instruction set that this machine has: 1 is AVX2 or NEON, 2 is AVX-512, 0 is none. Every function below
  * takes a `level` from 1 to this one. */
-API i64 curvefold_level(void) { return best_level(); }
+i64 curvefold_level(void) { return best_level(); }
 
 /* Factors fronts list[0 .. count-1] in turn. With x (in the order of elimination, or null) it also solves L y = x on
  * the way, while the panels are in the cache. thread: 0 or 1, for its scratch. Returns 1 + the front that is not
  * positive definite, else 0. */
-API i64 curvefold_factor(const Plan *plan, i64 level, i64 thread, const i32 *list, i64 count, const double *values,
+i64 curvefold_factor(const Plan *plan, i64 level, i64 thread, const i32 *list, i64 count, const double *values,
                          double *x) {
     const Set *set = &sets[level - 1];
     double *scratch = plan->scratch + thread * plan->scratch_size;
@@ -102,13 +102,13 @@ API i64 curvefold_factor(const Plan *plan, i64 level, i64 thread, const i32 *lis
 }
 
 /* L y = x on the fronts of the list, in place. */
-API void curvefold_forward(const Plan *plan, i64 level, i64 thread, const i32 *list, i64 count, double *x) {
+void curvefold_forward(const Plan *plan, i64 level, i64 thread, const i32 *list, i64 count, double *x) {
     double *scratch = plan->scratch + thread * plan->scratch_size;
     for (i64 k = 0; k < count; k++) sets[level - 1].forward(plan, plan->fronts + list[k], x, scratch);
 }
 
 /* Lᵀ z = y on the fronts of the list, last one first, in place. */
-API void curvefold_backward(const Plan *plan, i64 level, i64 thread, const i32 *list, i64 count, double *x) {
+void curvefold_backward(const Plan *plan, i64 level, i64 thread, const i32 *list, i64 count, double *x) {
     double *scratch = plan->scratch + thread * plan->scratch_size;
     for (i64 k = count - 1; k >= 0; k--) sets[level - 1].backward(plan, plan->fronts + list[k], x, scratch);
 }

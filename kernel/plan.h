@@ -56,4 +56,11 @@ typedef struct {
     i64 scratch_size;
 } Plan;
 
+/* kernel.c says what each of them does. */
+API void curvefold_layout(i64 layout[4]);
+API i64 curvefold_level(void);
+API i64 curvefold_factor(const Plan *, i64 level, i64 thread, const i32 *list, i64 count, const double *values, double *x);
+API void curvefold_forward(const Plan *, i64 level, i64 thread, const i32 *list, i64 count, double *x);
+API void curvefold_backward(const Plan *, i64 level, i64 thread, const i32 *list, i64 count, double *x);
+
 #endif

@@ -106,23 +106,27 @@ def wheel(name: str) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
         library = Path(folder) / f"kernel{TARGETS[name].suffix}"
-        compile_with_zig([str(SOURCES / "kernel.c"), *FLAGS], name, library)
+        compile_library(name, library)
         partial = Path(folder) / path.name
         pack(library, name, partial)
         partial.replace(path)
     return path
 
 
-def compile_with_zig(arguments: list[str], name: str, output: Path) -> None:
+def compile_library(name: str, output: Path) -> None:
+    """The kernel's library for a platform. Raises BuildError."""
+    strip = [] if TARGETS[name].suffix == ".dylib" else ["-s"]  # zig's linker for macOS has no such option
+    compile_with_zig(TARGETS[name].zig, [str(SOURCES / "kernel.c"), *FLAGS, *strip], output)
+
+
+def compile_with_zig(target: str, arguments: list[str], output: Path) -> None:
     """Raises BuildError, with what the compiler said."""
-    target = TARGETS[name]
-    strip = [] if target.suffix == ".dylib" else ["-s"]  # zig's linker for macOS has no such option
-    command = [str(zig()), "cc", "-target", target.zig, *arguments, *strip, "-o", str(output)]
+    command = [str(zig()), "cc", "-target", target, *arguments, "-o", str(output)]
     caches = {f"ZIG_{kind}_CACHE_DIR": str(cache_folder() / "zig-cache") for kind in ("GLOBAL", "LOCAL")}
-    print(f"building {output.name} for {name}", file=sys.stderr, flush=True)
+    print(f"building {output.name} for {target}", file=sys.stderr, flush=True)
     ran = subprocess.run(command, env={**os.environ, **caches}, capture_output=True, text=True)
     if ran.returncode != 0 or not output.is_file():
-        raise BuildError(f"zig could not build {output.name} for {name}: {ran.stderr.strip()}")
+        raise BuildError(f"zig could not build {output.name} for {target}: {ran.stderr.strip()}")
 
 
 def zig() -> Path:
