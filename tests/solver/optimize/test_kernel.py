@@ -41,15 +41,6 @@ def plan() -> KernelPlan:
 
 
 @pytest.fixture
-def installed() -> Library:
-    """The kernel of this machine."""
-    found = linear_algebra().library
-    if found is None:
-        pytest.skip(linear_algebra().phrase)
-    return found
-
-
-@pytest.fixture
 def fresh(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
     """What was found out about the kernel in this process is forgotten, now and after the test."""
     monkeypatch.setattr(kernel, "linear_algebra", kernel.linear_algebra.__wrapped__)
@@ -81,9 +72,9 @@ def test_a_file_that_is_no_library_leaves_numpy_and_says_so(fresh: pytest.Monkey
     assert found.phrase.startswith("numpy and scipy: the compiled kernel cannot be loaded")
 
 
-def test_a_kernel_that_works_is_named_with_its_instructions(installed: Library) -> None:
-    assert installed.instructions in ("AVX2", "AVX-512", "NEON")
-    assert linear_algebra().phrase == f"compiled kernel, {installed.instructions}"
+def test_a_kernel_that_works_is_named_with_its_instructions(kernel_library: Library) -> None:
+    assert kernel_library.instructions in ("AVX2", "AVX-512", "NEON")
+    assert linear_algebra().phrase == f"compiled kernel, {kernel_library.instructions}"
     rows, cols, plane = diamond_pattern(3)
     assert LinearSystem(rows, cols, plane).backend == "kernel"
 
@@ -142,15 +133,17 @@ def _spoilt(good: Library, **functions: object) -> Library:
 
 
 def test_the_self_test_finds_each_function_that_does_nothing_or_too_little(
-    installed: Library, fresh: pytest.MonkeyPatch
+    kernel_library: Library, fresh: pytest.MonkeyPatch
 ) -> None:
-    assert kernel.passes_self_test(installed)
+    assert kernel.passes_self_test(kernel_library)
     for name in ("factor", "forward", "backward"):
-        spoilt = _spoilt(installed, **{name: lambda *a: 0})
+        spoilt = _spoilt(kernel_library, **{name: lambda *a: 0})
         assert not kernel.passes_self_test(spoilt), name
     # Factors all but the last front of each list; takes an indefinite matrix for a good one.
-    last_missing = _spoilt(installed, factor=lambda *a: installed.factor(*a[:4], max(a[4] - 1, 0), *a[5:]))
-    blind = _spoilt(installed, factor=lambda *a: 0 * installed.factor(*a))
+    last_missing = _spoilt(
+        kernel_library, factor=lambda *a: kernel_library.factor(*a[:4], max(a[4] - 1, 0), *a[5:])
+    )
+    blind = _spoilt(kernel_library, factor=lambda *a: 0 * kernel_library.factor(*a))
     assert not kernel.passes_self_test(last_missing)
     assert not kernel.passes_self_test(blind)
     fresh.delenv(kernel.SWITCH, raising=False)
@@ -161,24 +154,44 @@ def test_the_self_test_finds_each_function_that_does_nothing_or_too_little(
 # --- what it computes, on every instruction set ----------------------------------------------------------
 
 
-def test_every_instruction_set_gives_the_same_bits(installed: Library) -> None:
+def test_every_instruction_set_gives_the_same_bits(kernel_library: Library) -> None:
     rows, cols, plane = diamond_pattern(SIDE)
     values, rhs = dominant_values(rows, cols, 3 * len(plane)), np.cos(np.arange(3 * len(plane)))
     solutions = set()
-    for level in range(1, installed.level + 1):
+    for level in range(1, kernel_library.level + 1):
         system = CompiledFactorization(
-            installed, symbolic_of(rows, cols, plane), rows, cols, threads=1, level=level
+            kernel_library, symbolic_of(rows, cols, plane), rows, cols, threads=1, level=level
         )
         system.factorize(values, rhs)
         solutions.add(system.solution().tobytes())
     assert len(solutions) == 1
 
 
-def test_an_instruction_set_that_the_machine_lacks_is_refused(installed: Library) -> None:
+def test_each_thread_has_a_scratch_of_its_own(kernel_library: Library) -> None:
+    rows, cols, plane = diamond_pattern(SIDE)
+    values, size = dominant_values(rows, cols, 3 * len(plane)), 3 * len(plane)
+    system = CompiledFactorization(kernel_library, symbolic_of(rows, cols, plane), rows, cols, threads=1)
+    halves = np.split(system._scratch, 2)
+    x = np.ones(size)
+    for thread in (0, 1):
+        for half in halves:
+            half.fill(np.nan)
+        for front_list in system._lists():
+            call = system._call(thread, front_list)
+            assert system._library.factor(*call, values.ctypes.data, x.ctypes.data) == 0
+        for front_list in reversed(list(system._lists())):
+            system._library.backward(*system._call(thread, front_list), x.ctypes.data)
+        assert np.isfinite(halves[thread]).all()
+        assert np.isnan(halves[1 - thread]).all()
+
+
+def test_an_instruction_set_that_the_machine_lacks_is_refused(kernel_library: Library) -> None:
     rows, cols, plane = diamond_pattern(3)
-    for level in (0, installed.level + 1):
+    for level in (0, kernel_library.level + 1):
         with pytest.raises(ValueError, match="instruction set"):
-            CompiledFactorization(installed, symbolic_of(rows, cols, plane), rows, cols, threads=1, level=level)
+            CompiledFactorization(
+                kernel_library, symbolic_of(rows, cols, plane), rows, cols, threads=1, level=level
+            )
 
 
 # --- broken plans ----------------------------------------------------------------------------------------
@@ -231,7 +244,7 @@ def test_a_plan_as_it_is_laid_out_is_accepted(plan: KernelPlan) -> None:
 
 
 def test_a_plan_with_one_wrong_number_is_refused_or_harmless(
-    installed: Library, plan: KernelPlan, monkeypatch: pytest.MonkeyPatch
+    kernel_library: Library, plan: KernelPlan, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rows, cols, plane = diamond_pattern(SIDE)
     symbolic, values = symbolic_of(rows, cols, plane), dominant_values(rows, cols, 3 * len(plane))
@@ -243,7 +256,7 @@ def test_a_plan_with_one_wrong_number_is_refused_or_harmless(
         monkeypatch.setattr(compiled, "lay_out", lambda *a, broken=broken: broken)
         monkeypatch.setattr(compiled, "np", fenced)
         try:
-            system = CompiledFactorization(installed, symbolic, rows, cols, threads=1)
+            system = CompiledFactorization(kernel_library, symbolic, rows, cols, threads=1)
         except BrokenPlanError:
             refused += 1
             continue
@@ -297,9 +310,9 @@ def test_runs_out_of_order_are_refused(plan: KernelPlan) -> None:
         check(replace(plan, runs=runs))
 
 
-def test_values_of_another_kind_never_reach_the_library(installed: Library) -> None:
+def test_values_of_another_kind_never_reach_the_library(kernel_library: Library) -> None:
     rows, cols, plane = diamond_pattern(3)
-    system = CompiledFactorization(installed, symbolic_of(rows, cols, plane), rows, cols, threads=1)
+    system = CompiledFactorization(kernel_library, symbolic_of(rows, cols, plane), rows, cols, threads=1)
     values = dominant_values(rows, cols, 3 * len(plane))
     for wrong in (values[:-1], values.astype(np.float32), np.repeat(values, 2)[::2]):
         with pytest.raises(ValueError, match="contiguous doubles"):
