@@ -29,7 +29,7 @@ class CurvefoldPreferences(bpy.types.AddonPreferences):
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True
         self.layout.prop(self, "budget")
-        self.layout.label(text=f"Computing with {linear_algebra().phrase}")
+        self.layout.label(text=f"Linear algebra: {linear_algebra().phrase}")
         self.layout.label(text="Keys in Object Mode")
         keymaps.draw(self.layout, context)
 

@@ -43,7 +43,7 @@ def linear_algebra() -> LinearAlgebra:
     try:
         library = _working_library()
     except KernelUnavailableError as error:
-        return LinearAlgebra(None, f"numpy and scipy: {error}")
+        return LinearAlgebra(None, f"numpy and scipy; {error}")
     return LinearAlgebra(library, f"compiled kernel, {library.instructions}")
 
 

@@ -16,7 +16,7 @@ def test_the_preferences_say_what_computes(extension, phrase, monkeypatch):
     texts = []
     layout = SimpleNamespace(prop=lambda *a: None, label=lambda text: texts.append(text))
     preferences.CurvefoldPreferences.draw(SimpleNamespace(layout=layout), None)
-    assert f"Computing with {phrase}" in texts
+    assert f"Linear algebra: {phrase}" in texts
 
 
 def test_the_command_line_says_what_computes(extension, phrase, capsys):

@@ -91,9 +91,9 @@ def test_install_enable_fold_and_remove(built: Path, tmp_path: Path) -> None:
     assert found["warnings"] == {}
     with zipfile.ZipFile(built) as archive:
         bundled = any("/curvefold_kernel-" in name for name in archive.namelist())
-    without = "numpy and scipy: the compiled kernel is not installed"
+    without = "numpy and scipy; the compiled kernel is not installed"
     if os.environ.get("CURVEFOLD_KERNEL") == "0":
-        without = "numpy and scipy: the compiled kernel is switched off by CURVEFOLD_KERNEL=0"
+        without = "numpy and scipy; the compiled kernel is switched off by CURVEFOLD_KERNEL=0"
         bundled = False
     assert found["linear algebra"].startswith("compiled kernel, " if bundled else without)
     for name in BUNDLED:

@@ -15,7 +15,7 @@ from solver import command_line
 from solver.optimize.kernel import SWITCH, linear_algebra
 
 ROOT = Path(__file__).resolve().parents[2]
-OFF = f"numpy and scipy: the compiled kernel is switched off by {SWITCH}=0"
+OFF = f"numpy and scipy; the compiled kernel is switched off by {SWITCH}=0"
 
 #: Of the sheet, mm.
 SIDE = 100.0

@@ -54,13 +54,13 @@ def test_the_switch_in_the_environment_leaves_numpy_and_says_so(fresh: pytest.Mo
     fresh.setenv(kernel.SWITCH, "0")
     found = kernel.linear_algebra()
     assert found.library is None
-    assert found.phrase == "numpy and scipy: the compiled kernel is switched off by CURVEFOLD_KERNEL=0"
+    assert found.phrase == "numpy and scipy; the compiled kernel is switched off by CURVEFOLD_KERNEL=0"
 
 
 def test_a_missing_kernel_leaves_numpy_and_says_so(fresh: pytest.MonkeyPatch) -> None:
     fresh.setattr(kernel, "PACKAGE", "curvefold_kernel_that_nobody_installs")
     fresh.delenv(kernel.SWITCH, raising=False)
-    assert kernel.linear_algebra().phrase == "numpy and scipy: the compiled kernel is not installed"
+    assert kernel.linear_algebra().phrase == "numpy and scipy; the compiled kernel is not installed"
 
 
 def test_a_file_that_is_no_library_leaves_numpy_and_says_so(fresh: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -69,7 +69,7 @@ def test_a_file_that_is_no_library_leaves_numpy_and_says_so(fresh: pytest.Monkey
     (tmp_path / "kernel.so").write_bytes(b"no library")
     found = kernel.linear_algebra()
     assert found.library is None
-    assert found.phrase.startswith("numpy and scipy: the compiled kernel cannot be loaded")
+    assert found.phrase.startswith("numpy and scipy; the compiled kernel cannot be loaded")
 
 
 def test_a_kernel_that_works_is_named_with_its_instructions(kernel_library: Library) -> None:
@@ -148,7 +148,7 @@ def test_the_self_test_finds_each_function_that_does_nothing_or_too_little(
     assert not kernel.passes_self_test(blind)
     fresh.delenv(kernel.SWITCH, raising=False)
     fresh.setattr(kernel, "Library", lambda path: blind)
-    assert kernel.linear_algebra().phrase == "numpy and scipy: the compiled kernel failed its self-test"
+    assert kernel.linear_algebra().phrase == "numpy and scipy; the compiled kernel failed its self-test"
 
 
 # --- what it computes, on every instruction set ----------------------------------------------------------
