@@ -218,7 +218,7 @@ def _runs(symbolic: Symbolic, f: StructArray) -> StructArray:
 def _entries(symbolic: Symbolic, f: StructArray, rows: IntArray, cols: IntArray) -> tuple[Int32Array, Int32Array]:
     """Source and target of all entries, front by front in the order of their storage; fills their ranges in."""
     addresses = entry_addresses(symbolic, rows, cols)
-    source = np.argsort(addresses)
+    source = np.argsort(addresses, kind="stable")  # long runs are in order already: four times as fast
     addresses = addresses[source]
     front = np.searchsorted(symbolic.panel_starts, addresses, side="right") - 1
     # In symbolic's panels nothing is rounded up.
