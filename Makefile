@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
-.PHONY: help demo test test-all test-gui zip lint clean wheels
+.PHONY: help demo test test-all test-gui test-kernel zip lint clean wheels
 
 # The Blender that demo and test use, and all that test-all uses.
 BLENDER := 5.0.1
@@ -17,6 +17,7 @@ help:
 	@echo "make test      lint, solver, extension in Blender $(BLENDER), built zip"
 	@echo "make test-all  the same in Blender $(BLENDERS)"
 	@echo "make test-gui  a person's way through the extension, in a real Blender on a virtual screen (needs root)"
+	@echo "make test-kernel  the compiled kernel under sanitizers, as a Windows library (Wine) and on ARM (qemu)"
 	@echo "make zip       dist/curvefold-*.zip, one a platform"
 	@echo "make lint      ruff and mypy"
 	@echo "make clean     remove what was built (environments and downloads stay)"
@@ -43,6 +44,9 @@ test-all: lint zip
 
 test-gui: zip
 	@"$$(scripts/setup.sh solver)" -m pytest -x -s tests/gui
+
+test-kernel:
+	@"$$(scripts/setup.sh solver)" scripts/check_kernel.py
 
 wheels:
 	@"$$(scripts/setup.sh solver)" scripts/wheels.py

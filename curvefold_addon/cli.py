@@ -117,6 +117,7 @@ def _add_rulings(paper: bpy.types.Object, result: solver.FoldResult) -> None:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog=COMMAND, description="Folds paper along curves.", allow_abbrev=False)
+    command_line.add_version_argument(parser)
     commands = parser.add_subparsers(title="commands", required=True, metavar="fold | batch | verify")
     fold = commands.add_parser(
         "fold", help="fold one drawing", description="Folds one drawing.", allow_abbrev=False

@@ -3,8 +3,8 @@
 #
 #   scripts/setup.sh solver               .venv in the tree: solver, tests, linters; no Blender
 #   scripts/setup.sh bpy VERSION          Blender VERSION as a module, with the solver's libraries and pytest
-#   scripts/setup.sh bare VERSION         the same without scipy, shapely and svgelements, which must then
-#                                         come from the wheels in a built extension
+#   scripts/setup.sh bare VERSION         the same without scipy, shapely, svgelements and the compiled kernel,
+#                                         which must then come from the wheels in a built extension
 #   scripts/setup.sh has-python VERSION   exit 0 when a Python that Blender VERSION needs is there
 #
 # Everything but .venv lives in ${XDG_CACHE_HOME:-~/.cache}/curvefold. A finished environment is used again
@@ -132,6 +132,22 @@ check_libraries() {
     fi
 }
 
+# install_kernel FOLDER: the compiled kernel, which is an option; without it numpy and scipy do its work.
+install_kernel() {
+    local folder="$1" wheel
+    if [ "${CURVEFOLD_KERNEL:-}" = 0 ] || ! wheel="$("$folder/bin/python" "$root/scripts/kernel_wheels.py" here)"; then
+        say "going on without the compiled kernel"
+        return
+    fi
+    [ "$(cat "$folder/.curvefold-kernel" 2>/dev/null)" = "$(basename "$wheel")" ] && return
+    rm -f "$folder/.curvefold-kernel"
+    if "$folder/bin/python" -m pip install --quiet --no-deps --no-index --force-reinstall "$wheel" >&2; then
+        basename "$wheel" > "$folder/.curvefold-kernel"
+    else
+        say "going on without the compiled kernel: pip could not install $wheel"
+    fi
+}
+
 checksum() { cat "$@" | cksum; }
 
 wheel_folder() { mkdir -p "$cache/wheels"; }
@@ -152,6 +168,7 @@ case "$kind" in
             python="$folder/bin/python"
         fi
         make_environment "$folder" "$python" "$(checksum "$requirements"/*.txt)" -r "$requirements/dev.txt"
+        install_kernel "$folder"
         ;;
     bpy|bare)
         [ -n "$version" ] || die "which Blender? scripts/setup.sh $kind VERSION"
@@ -170,6 +187,7 @@ case "$kind" in
             packages+=(-r "$requirements/bundled.txt")
         fi
         make_environment "$folder" "$python" "$numpy $(checksum "$requirements"/*.txt)" "${packages[@]}"
+        [ "$kind" = bare ] || install_kernel "$folder"
         check_libraries "$folder"
         ;;
     has-python)

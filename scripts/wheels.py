@@ -5,6 +5,7 @@
 
 The wheels are unmodified files from the package index, taken by pip, for every platform and Python that
 Blender has; Blender picks the right one. They are cached in ${XDG_CACHE_HOME:-~/.cache}/curvefold/bundled.
+The compiled kernel's own wheels are built (scripts/kernel_wheels.py); where that fails, the zips go without them.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+
+import kernel_wheels
 
 ROOT = Path(__file__).resolve().parent.parent
 MANIFEST = ROOT / "blender_manifest.toml"
@@ -92,6 +95,15 @@ def fetch(name: str, version: str, python: str, platform: str) -> Path:
     return found
 
 
+def kernel_wheel(platform: str) -> Path | None:
+    """The compiled kernel's wheel for a platform; None, and a line that says why, where it cannot be built."""
+    try:
+        return kernel_wheels.wheel(platform)
+    except (kernel_wheels.BuildError, OSError) as error:
+        print(f"the extension for {platform} goes without the compiled kernel: {error}", flush=True)
+        return None
+
+
 def manifest_list(names: list[str]) -> str:
     return "\n".join(["wheels = [", *(f'  "./wheels/{name}",' for name in names), "]"])
 
@@ -106,6 +118,8 @@ def main() -> None:
     wheels = {}
     for want in wanted():
         path = find(*want) or fetch(*want)
+        wheels[path.name] = path
+    for path in filter(None, map(kernel_wheel, PLATFORMS)):
         wheels[path.name] = path
 
     text = MANIFEST.read_text(encoding="utf-8")

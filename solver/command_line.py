@@ -21,6 +21,7 @@ from .folding import SqpReport
 from .pattern.read_options import BORDERS, UNITS_MM, ReadOptions
 from .pattern.reading import DRAWING_SUFFIXES, read_pattern
 from .verify_mesh import verdict, verify_mesh
+from .version import in_words as version_in_words
 
 #: Exit codes: everything asked was reached, or a mesh is paper; folded, but not all that was asked, or a mesh is no
 #: paper; the input cannot be used.
@@ -65,6 +66,19 @@ def add_fold_arguments(parser: argparse.ArgumentParser) -> None:
         help="write the rulings (rulings.obj, rulings.svg) and the Gauss image (gauss_image.obj) too",
     )  # fmt: skip
     _add_read_arguments(parser)
+
+
+def add_version_argument(parser: argparse.ArgumentParser) -> None:
+    """``--version``: which Curvefold this is, and what solves its linear systems."""
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and what computes, and exit")
+
+
+class _Version(argparse.Action):
+    """Finds out what to print only when it is asked."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        print(version_in_words())
+        parser.exit()
 
 
 def _add_read_arguments(parser: argparse.ArgumentParser) -> None:
@@ -215,6 +229,7 @@ def _progress(stream: TextIO) -> Callable[[int, SqpReport], None]:
 def main(argv: list[str] | None, stream: TextIO) -> int:
     """``python -m solver``: without Blender."""
     parser = argparse.ArgumentParser(prog="python -m solver", description="Fold paper along curves.")
+    add_version_argument(parser)
     commands = parser.add_subparsers(dest="command", required=True)
     command = commands.add_parser("fold", help="fold a drawing and write OBJ, FOLD and a report")
     command.add_argument("pattern", metavar="PATTERN", help=f"the drawing to fold ({', '.join(DRAWING_SUFFIXES)})")

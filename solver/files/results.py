@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 from ..arrays import FloatArray
 from ..errors import CurvefoldError
 from ..fold import FoldResult
+from ..optimize.kernel import linear_algebra
 from .atomic import write_whole
 from .fold_format import fold_text
 from .obj import obj_text
@@ -35,7 +36,7 @@ def write_results(result: FoldResult, folder: str | Path, with_rulings: bool = F
     vertices = surface.apply(result.positions)
     faces = surface.faces()
     name = result.pattern.name or "folded"
-    report = result.report()
+    report = result.report() | {"linear_algebra": linear_algebra().phrase}
     texts = {
         OBJ_NAME: obj_text(
             vertices,
