@@ -7,7 +7,8 @@ stretch of a crease choose for itself, and where choices meet the paper is stuck
   planes), so creases around one patch should agree; and at an inner crease vertex of four or more arms at least
   three fold one way and at least one the other (a spherical polygon of perimeter 2 pi);
 - the offset is the softest bending of the flat sheet with these sides.
-Both depend on the drawing's geometry alone: a turned, moved, scaled or mirrored drawing starts likewise.
+Both depend on the drawing's geometry alone: a turned, moved, scaled or mirrored drawing starts likewise. Where the
+drawing carries mountains and valleys that paper can have, they come first, and the other creases fit them.
 It is only a start: the fold goes where the energy leads it, and other sides can win.
 """
 
@@ -22,15 +23,16 @@ from scipy.sparse.linalg import splu
 from shapely import Point
 
 from .arrays import BoolArray, FloatArray, IntArray
+from .controls.side import SIGNS
 from .net.piecewise_dog import PiecewiseDog
 from .objectives.bending import bending
 from .objectives.continuity import continuity
 from .objectives.fold_angle import driven_points
 
-#: Up to this many chains all choices are tried; more are improved one flip at a time.
+#: Up to this many free chains all choices are tried; sides of more are annealed.
 _ENUMERATED = 14
-#: Pairs are flipped among the first so many chains.
-_PAIRED = 60
+#: Annealing: from the first to the last temperature, in costs, in so many sweeps over all chains, so many times.
+_HOT, _COLD, _SWEEPS, _ANNEALINGS = 8.0, 0.02, 60, 3
 #: Cost of a crease vertex whose arms cannot close, against agreements between creases, which are scaled to 1.
 _VERTEX_COST = 10.0
 #: Vertices with more arms are left to the fold; arms within this of a straight line are one, radians.
@@ -46,12 +48,23 @@ _MAX_COUPLED = 1500
 def choose_sides(net: PiecewiseDog, bound: Mapping[int, int] | None = None) -> IntArray:
     """+1 valley or -1 mountain for each chain (n,).
 
-    bound: sides of creases (by index) that are given. Without any, the first chain is a valley.
+    bound: sides of creases (by index) that are given. Sides that are drawn are taken where both letters occur and
+    no more crease vertices suffer by them than by a free choice. Without either, the first chain is a valley.
     """
-    count = len(net.chain_crease)
-    coupling = _couplings(net, count)
+    coupling = _couplings(net, len(net.chain_crease))
     arms = _inner_vertices(net)
     given = np.array([(bound or {}).get(int(crease), 0) for crease in net.chain_crease], dtype=np.int64)
+    free = _chosen(given, coupling, arms)
+    drawn = np.array([SIGNS.get(net.crease_letters[int(crease)], 0) for crease in net.chain_crease], dtype=np.int64)
+    if not ((drawn > 0).any() and (drawn < 0).any()):
+        return free
+    fitting = _chosen(np.where(given == 0, drawn, given), coupling, arms)
+    return fitting if _unfoldable(fitting, arms) <= _unfoldable(free, arms) else free
+
+
+def _chosen(given: IntArray, coupling: FloatArray, arms: list[tuple[IntArray, BoolArray]]) -> IntArray:
+    """The sides (n,) of least cost among those that have the given ones (n,), 0 where there is none."""
+    given = given.copy()
     if not given.any():
         given[:1] = 1
     free = np.flatnonzero(given == 0)
@@ -60,7 +73,17 @@ def choose_sides(net: PiecewiseDog, bound: Mapping[int, int] | None = None) -> I
         sides = np.repeat(given[None], len(codes), axis=0)
         sides[:, free] = 1 - 2 * ((codes[:, None] >> np.arange(len(free))[None]) & 1)
         return np.asarray(sides[int(np.argmin(_cost(sides, coupling, arms)))])
-    return _improve(_spread(coupling, given), free, coupling, arms)
+    return _annealed(_spread(coupling, given), free, coupling, arms)
+
+
+def _unfoldable(sides: IntArray, arms: list[tuple[IntArray, BoolArray]]) -> int:
+    """How many crease vertices cannot fold with these sides (n,)."""
+    return sum(not foldable[_code(sides[chains])] for chains, foldable in arms)
+
+
+def _code(sides: IntArray) -> int:
+    """The sides (d,) of a vertex's arms as a number: bit k is set where arm k is a mountain."""
+    return int(((sides < 0) << np.arange(len(sides))).sum())
 
 
 def first_fold(net: PiecewiseDog, sides: IntArray) -> FloatArray:
@@ -222,22 +245,37 @@ def _spread(coupling: FloatArray, given: IntArray) -> IntArray:
     return sides
 
 
-def _improve(
+def _annealed(
     sides: IntArray, free: IntArray, coupling: FloatArray, arms: list[tuple[IntArray, BoolArray]]
 ) -> IntArray:
-    """Flip single free chains, and pairs of them, while that lowers the cost."""
-    best = float(_cost(sides[None], coupling, arms)[0])
-    pairs = np.array(list(itertools.combinations_with_replacement(range(min(len(free), _PAIRED)), 2)))
-    for _ in range(4 * len(sides)):
-        singles = np.repeat(sides[None], len(free), axis=0)
-        singles[np.arange(len(free)), free] *= -1
-        doubles = np.repeat(sides[None], len(pairs), axis=0)
-        for column in (0, 1):
-            doubles[np.arange(len(pairs)), free[pairs[:, column]]] *= -1
-        trials = np.vstack([singles, doubles])
-        costs = _cost(trials, coupling, arms)
-        k = int(np.argmin(costs))
-        if costs[k] >= best - 1e-12:
-            break
-        best, sides = float(costs[k]), trials[k]
-    return sides
+    """Better sides (n,): single free chains are flipped, at first also for the worse (simulated annealing).
+
+    The numbers drawn are always the same, so that a drawing starts the same way every time.
+    """
+    rng = np.random.default_rng(0)
+    # A flip of a chain toggles these bits of the codes of the crease vertices it ends at.
+    toggles: list[list[tuple[int, int]]] = [[] for _ in sides]
+    for k, (chains, _) in enumerate(arms):
+        for chain in np.unique(chains).tolist():
+            toggles[chain].append((k, _code(np.where(chains == chain, -1, 1))))
+    folds = [foldable.tolist() for _, foldable in arms]
+    best = sides.copy()
+    least = float(_cost(best[None], coupling, arms)[0])
+    for _ in range(_ANNEALINGS):
+        sides = best.copy()
+        field = coupling @ sides
+        codes = [_code(sides[chains]) for chains, _ in arms]
+        for temperature in np.geomspace(_HOT, _COLD, _SWEEPS).tolist():
+            chances = temperature * rng.standard_exponential(len(free))
+            for i, chance in zip(rng.permutation(free).tolist(), chances.tolist(), strict=True):
+                worse = sum(folds[k][codes[k]] - folds[k][codes[k] ^ bits] for k, bits in toggles[i])
+                if 4.0 * sides[i] * field[i] + _VERTEX_COST * worse > chance:
+                    continue
+                sides[i] *= -1
+                field += 2.0 * sides[i] * coupling[:, i]
+                for k, bits in toggles[i]:
+                    codes[k] ^= bits
+        cost = float(_cost(sides[None], coupling, arms)[0])
+        if cost < least:
+            best, least = sides.copy(), cost
+    return best

@@ -16,8 +16,9 @@ from .controls.pair import Pair
 from .controls.pull import Finding, Lack
 from .description import FoldDescription, Handle
 from .drive import MAX_MEAN_STRETCH
-from .errors import CurvefoldError, PatternError
+from .errors import CurvefoldError, DescriptionError, PatternError
 from .folding import OPENING_ANGLES, REACHED, FoldModel, SqpReport, Status
+from .gauss_image import gauss_area
 from .laid_flat import off_plane
 from .measurement import Measurement, measure
 from .net.build import build_net
@@ -25,6 +26,11 @@ from .net.piecewise_dog import PiecewiseDog
 from .pattern.crease_pattern import CreasePattern
 from .verify import verify
 
+#: Drawn sides that are held count as better when the median angle is so many times as large, at a mean stretch that
+#: is at most so many times as large, or within what paper may show.
+_DEEPER, _AS_WHOLE = 1.1, 1.2
+#: What is said then.
+_HELD = "folded with the sides of the drawing held, since left free the creases came less far"
 #: SQP iterations between two calls of ``progress``.
 _REPORT_EVERY = 10
 #: A sheet thinner than this is flat, net units.
@@ -133,6 +139,7 @@ class FoldResult:
             "stretch_mean": float(m.stretch.mean()),
             "stretch_max": float(m.stretch.max()),
             "stretch_away": self._stretch_away(),
+            "gauss_area": gauss_area(self.net, self.positions),
             "continuity_mean": float(m.continuity.mean()) if len(m.continuity) else 0.0,
             "continuity_max": float(m.continuity.max(initial=0.0)),
             "dog_residual_max": self.last.constraint,
@@ -259,6 +266,8 @@ def come_to_rest(model: FoldModel, description: FoldDescription, progress: Progr
     What another way comes to is kept only if it is all that was asked.
     """
     rest = _rest(model, description, progress, 0)
+    if rest.status in (Outcome.SHALLOW, Outcome.NOT_FOLDED) and description.assignments == "free":
+        rest = _with_drawn_sides(model.net, description, progress, rest)
     creased = len(model.net.chain_crease) > 0
     may_help = rest.status in _WORTH_ANOTHER_WAY and description.weights.fold_condition > 0 and creased
     if not (may_help and description.handles) or _too_far_apart(description.handles, model.net):
@@ -271,6 +280,29 @@ def come_to_rest(model: FoldModel, description: FoldDescription, progress: Progr
             return other
         iterations = other.iterations
     return replace(rest, iterations=iterations)
+
+
+def _with_drawn_sides(
+    net: PiecewiseDog, description: FoldDescription, progress: Progress | None, free: Rest
+) -> Rest:
+    """The fold with the drawing's sides held, where it carries both and the drive comes farther with them."""
+    if description.angle is None or not {"M", "V"} <= set(net.crease_letters):
+        return free
+    model = FoldModel(net, weights=description.weights)
+    model.set_assignments(net.crease_letters)
+    try:
+        model.set_controls(description.controls)
+    except DescriptionError:
+        return free  # a control asks for another side
+    model.set_handles(description.handles)
+    model.set_fold_angle(description.angle)
+    held = _rest(model, description, progress, free.iterations)
+    angles = [fold_angle_quantiles(one.measurement)[1] for one in (free, held)]
+    stretch = [float(one.measurement.stretch.mean()) for one in (free, held)]
+    deeper = angles[1] >= _DEEPER * angles[0] and stretch[1] <= max(_AS_WHOLE * stretch[0], MAX_MEAN_STRETCH)
+    if held.status.ok or (deeper and held.status is Outcome.SHALLOW):
+        return replace(held, detail=f"{held.detail}; {_HELD}")
+    return replace(free, iterations=held.iterations)
 
 
 def _rest(model: FoldModel, description: FoldDescription, progress: Progress | None, before: int) -> Rest:

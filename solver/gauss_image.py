@@ -81,6 +81,17 @@ def quad_normals(quads: IntArray, x: FloatArray) -> FloatArray:
     return normal / np.maximum(_lengths(normal), np.finfo(float).tiny)[:, None]
 
 
+def gauss_area(net: PiecewiseDog, positions: ArrayLike) -> float:
+    """How much area the Gauss image of positions (V,3) covers, steradians: none of smooth paper, more of ripples.
+
+    The unsigned areas that the normals of the four quads around each inner vertex span on the sphere, summed: the
+    total absolute curvature, which bent paper has none of. Raises ValueError for another shape.
+    """
+    x = frozen_array(positions, np.float64, (len(net.rest), 3), "positions")
+    normals = quad_normals(net.quads, x)[_quads_around(net)]
+    return 0.5 * float(_lengths(np.cross(normals[:, 0] - normals[:, 2], normals[:, 1] - normals[:, 3])).sum())
+
+
 def _lengths(vectors: FloatArray) -> FloatArray:
     """(n,) of vectors (n,3); norm is three times as slow for so short rows."""
     return np.asarray(np.sqrt(np.einsum("ij,ij->i", vectors, vectors)))
@@ -105,6 +116,18 @@ def _quad_pairs(net: PiecewiseDog) -> IntArray:
     pairs = np.column_stack([shared.row[some], shared.col[some]]).astype(np.int64)
     pairs.setflags(write=False)
     return pairs
+
+
+@lru_cache(maxsize=4)
+def _quads_around(net: PiecewiseDog) -> IntArray:
+    """(n,4) the shown quads around inner vertices of patches, in turn."""
+    around = np.full((len(net.rest), 4), -1, dtype=np.int64)
+    for corner in range(4):
+        around[net.quads[:, corner], corner] = np.arange(len(net.quads))
+    whole = around[(around >= 0).all(axis=1)]
+    whole = whole[_shown(net)[whole].all(axis=1)]
+    whole.setflags(write=False)
+    return whole
 
 
 @lru_cache(maxsize=4)

@@ -45,8 +45,8 @@ class PiecewiseDog:
     stars (S,5) inner vertices: centre, +x, +y, -x, -y; links (L,4) centre and three neighbours in turn
     neighbours (V,4) in +x, +y, -x, -y or -1
     stitches, crease_points, render_map; patch_polygons: flat patches, drawing units, index = patch
-    chain_crease: crease index of each chain; notes: what was repaired or merged, one sentence each
-    resolution: quads along the sheet's longer side that were used
+    chain_crease: crease index of each chain; crease_letters: FOLD letter that each crease is drawn with; notes:
+    what was repaired or merged, one sentence each resolution: quads along the sheet's longer side that were used
     """
 
     rest: FloatArray
@@ -66,6 +66,7 @@ class PiecewiseDog:
     patch_polygons: tuple[Polygon, ...]
     chain_crease: IntArray
     crease_labels: tuple[str, ...]
+    crease_letters: tuple[str, ...]
     notes: tuple[str, ...]
     grid: OrthogonalGrid
     topology: Topology

@@ -115,7 +115,7 @@ def test_a_crease_on_neither_side_is_said_to_be_flat_or_to_change(drawings: Modu
         ("UU", ""),
         ("VV", "not on the side that is drawn: crease 2 ("),
         ("UV", "not on the side that is drawn: crease 2 ("),
-        ("MV", "not on the side that is drawn: all of them, as if the sheet were turned over ("),
+        ("MM", "not on the side that is drawn: crease 1 ("),
     ],
 )
 def test_the_summary_names_the_creases_that_are_not_on_the_side_that_is_drawn(
