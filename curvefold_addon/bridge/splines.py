@@ -15,9 +15,8 @@ Array = NDArray[np.float64]
 
 #: How far cubics may be from a NURBS curve that they stand for, relative to its size: single precision.
 _NURBS_ERROR = 1e-7
-#: Cubics in one span of a NURBS curve at most; a usual one needs from 1 to 16, one of degree 39 up to 2,048, and
-#: with more of them the error falls sixteenfold each time they are doubled. Where it does not, weights of both signs
-#: have made a pole.
+#: Cubics in one span of a NURBS curve at most; a usual one needs from 1 to 16, one of degree 39 up to 2,048. When
+#: they are doubled, the error falls sixteenfold. Where it does not, weights of both signs have made a pole.
 _USUAL_CUBICS_IN_SPAN, _MOST_CUBICS_IN_SPAN = 16, 2048
 #: A segment whose handles lie this near to its chord (relative to the chord) is straight: single precision.
 _STRAIGHT = 1e-6
