@@ -33,12 +33,12 @@ lint:
 
 test: lint zip
 	@python="$$(scripts/setup.sh solver)"
-	"$$python" -m pytest tests/architecture tests/solver
+	"$$python" -m pytest tests/architecture tests/scripts tests/solver
 	scripts/test_blender.sh $(BLENDER)
 
 test-all: lint zip
 	@python="$$(scripts/setup.sh solver)"
-	"$$python" -m pytest tests/architecture tests/solver
+	"$$python" -m pytest tests/architecture tests/scripts tests/solver
 	scripts/test_blender.sh $(BLENDERS)
 
 test-gui: zip

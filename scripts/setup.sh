@@ -7,12 +7,12 @@
 #                                         come from the wheels in a built extension
 #   scripts/setup.sh has-python VERSION   exit 0 when a Python that Blender VERSION needs is there
 #
-# Everything but .venv lives in ${XDG_CACHE_HOME:-~/.cache}/curvefold. A finished environment is used again
-# until what it is made of changes.
+# Everything but .venv lives in the folder that scripts/cache_folder.sh names. A finished environment is used
+# again until what it is made of changes.
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
-cache="${XDG_CACHE_HOME:-$HOME/.cache}/curvefold"
+cache="$("$root/scripts/cache_folder.sh")"
 export PIP_DISABLE_PIP_VERSION_CHECK=1
 
 say() { printf '%s\n' "$*" >&2; }
@@ -35,11 +35,11 @@ python_is() { "$1" -c "import sys; sys.exit(not ($2))" >/dev/null 2>&1; }
 # find_python CONDITION NAME...: the first of the named commands (or their siblings kept by pyenv) that runs
 # and meets the condition on sys.version_info.
 find_python() {
-    local condition="$1" name candidate
+    local condition="$1" name candidate pyenv=~/.pyenv
     shift
     for name in "$@"; do
         for candidate in "$name" "/usr/bin/$name" "/usr/local/bin/$name" \
-            "${PYENV_ROOT:-$HOME/.pyenv}"/versions/*/bin/"$name"; do
+            "${PYENV_ROOT:-$pyenv}"/versions/*/bin/"$name"; do
             command -v "$candidate" >/dev/null 2>&1 || continue
             if python_is "$candidate" "$condition"; then
                 command -v "$candidate"

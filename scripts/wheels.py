@@ -4,23 +4,23 @@
     python scripts/wheels.py --check    only say whether the manifest lists what it should
 
 The wheels are unmodified files from the package index, taken by pip, for every platform and Python that
-Blender has; Blender picks the right one. They are cached in ${XDG_CACHE_HOME:-~/.cache}/curvefold/bundled.
+Blender has; Blender picks the right one. They are cached in the folder that scripts/cache_folder.sh names.
 """
 
 from __future__ import annotations
 
 import argparse
-import os
 import re
 import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 MANIFEST = ROOT / "blender_manifest.toml"
-REQUIREMENTS = ROOT / "requirements" / "bundled.txt"
+REQUIREMENTS = ROOT / "requirements"
 FOLDER = ROOT / "wheels"
 
 PYTHONS = ("311", "313")
@@ -28,23 +28,30 @@ PYTHONS = ("311", "313")
 #: For each of Blender's platforms, the wheel platforms that run there, as pip names them. The macOS ones
 #: stop at the version where scipy still brings its own linear algebra.
 PLATFORMS = {
+    "linux-arm64": ("manylinux_2_28_aarch64", "manylinux_2_17_aarch64", "manylinux2014_aarch64"),
     "linux-x64": ("manylinux_2_28_x86_64", "manylinux_2_17_x86_64", "manylinux2014_x86_64"),
     "macos-arm64": ("macosx_12_0_arm64", "macosx_11_0_arm64"),
     "macos-x64": ("macosx_10_13_x86_64", "macosx_10_9_x86_64"),
+    "windows-arm64": ("win_arm64",),
     "windows-x64": ("win_amd64",),
 }
+#: Which libraries a platform gets, where not those of bundled.txt.
+OTHER_REQUIREMENTS = {"windows-arm64": "bundled_windows_arm64.txt"}
 
 LIST = re.compile(r"^wheels = \[.*?^\]$", re.MULTILINE | re.DOTALL)
 
 
+@cache
 def cache_folder() -> Path:
-    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    return Path(base) / "curvefold" / "bundled"
+    script = ROOT / "scripts" / "cache_folder.sh"
+    printed = subprocess.run([str(script)], stdout=subprocess.PIPE, text=True, check=True).stdout
+    return Path(printed.removesuffix("\n")) / "bundled"
 
 
-def requirements() -> list[tuple[str, str]]:
-    """(name, version) of each bundled library."""
-    lines = (line.split("#")[0].strip() for line in REQUIREMENTS.read_text(encoding="utf-8").splitlines())
+def requirements(platform: str) -> list[tuple[str, str]]:
+    """(name, version) of each library that is bundled for one of Blender's platforms."""
+    path = REQUIREMENTS / OTHER_REQUIREMENTS.get(platform, "bundled.txt")
+    lines = (line.split("#")[0].strip() for line in path.read_text(encoding="utf-8").splitlines())
     pairs = []
     for line in filter(None, lines):
         name, version = line.split("==")
@@ -54,9 +61,9 @@ def requirements() -> list[tuple[str, str]]:
 
 def wanted() -> Iterator[tuple[str, str, str, str]]:
     """(name, version, python, platform) of every wheel; a pure one comes up for each and is found again."""
-    for name, version in requirements():
-        for python in PYTHONS:
-            for platform in PLATFORMS:
+    for platform in PLATFORMS:
+        for name, version in requirements(platform):
+            for python in PYTHONS:
                 yield name, version, python, platform
 
 
