@@ -1,8 +1,8 @@
 """Two-sided paper: another colour on the back, fine fibres, a little light coming through.
 
 The colours are plain inputs of two Principled shaders, multiplied by the grain: that is what exporters understand.
-glTF has one colour for both sides, that of the first Principled shader. Up to 5.1 that is the one that was made first;
-later the exporter follows the links, and begins with the last input of a node.
+glTF has one colour for both sides, that of the first Principled shader. Up to 5.1 that is the one that was made
+first; later the exporter follows the links, and begins with the last input of a node.
 """
 
 import bpy
