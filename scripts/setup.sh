@@ -5,6 +5,8 @@
 #   scripts/setup.sh bpy VERSION          Blender VERSION as a module, with the solver's libraries and pytest
 #   scripts/setup.sh bare VERSION         the same without scipy, shapely and svgelements, which must then
 #                                         come from the wheels in a built extension
+#   scripts/setup.sh libraries PYTHON SET  the solver's libraries that requirements/SET.txt names, and pytest, for
+#                                         that Python: newest, or bundled_windows_arm64 with the numpy of Blender
 #   scripts/setup.sh has-python VERSION   exit 0 when a Python that Blender VERSION needs is there
 #
 # Everything but .venv lives in the folder that scripts/cache_folder.sh names. A finished environment is used
@@ -172,12 +174,24 @@ case "$kind" in
         make_environment "$folder" "$python" "$numpy $(checksum "$requirements"/*.txt)" "${packages[@]}"
         check_libraries "$folder"
         ;;
+    libraries)
+        set="${3:-}"
+        [ -f "$requirements/$set.txt" ] || die "which libraries? scripts/setup.sh libraries PYTHON SET"
+        python="$(find_python "sys.version_info[:2] == (${version/./, })" "python$version" python3)" \
+            || die "Python $version is not on this machine"
+        packages=(-r "$requirements/$set.txt" -r "$requirements/test.txt")
+        # The extension bundles no numpy: that is Blender's.
+        [ "$set" = newest ] || packages+=("numpy==$(blender_numpy_version 5.0.1)")
+        folder="$cache/$set-$version"
+        make_environment "$folder" "$python" "$(checksum "$requirements/$set.txt" "$requirements/test.txt")" \
+            "${packages[@]}"
+        ;;
     has-python)
         find_blender_python "$version" >/dev/null
         exit
         ;;
     *)
-        die "scripts/setup.sh solver | bpy VERSION | bare VERSION | has-python VERSION"
+        die "scripts/setup.sh solver | bpy VERSION | bare VERSION | libraries PYTHON SET | has-python VERSION"
         ;;
 esac
 printf '%s\n' "$folder/bin/python"
