@@ -141,6 +141,8 @@ wheel_folder() { mkdir -p "$cache/wheels"; }
 kind="${1:-}"
 version="${2:-}"
 requirements="$root/requirements"
+# What .venv and the Blenders are made of.
+usual=("$requirements"/{bundled,dev,test}.txt)
 wheel_folder
 case "$kind" in
     solver)
@@ -153,7 +155,7 @@ case "$kind" in
         else
             python="$folder/bin/python"
         fi
-        make_environment "$folder" "$python" "$(checksum "$requirements"/*.txt)" -r "$requirements/dev.txt"
+        make_environment "$folder" "$python" "$(checksum "${usual[@]}")" -r "$requirements/dev.txt"
         ;;
     bpy|bare)
         [ -n "$version" ] || die "which Blender? scripts/setup.sh $kind VERSION"
@@ -171,7 +173,7 @@ case "$kind" in
         else
             packages+=(-r "$requirements/bundled.txt")
         fi
-        make_environment "$folder" "$python" "$numpy $(checksum "$requirements"/*.txt)" "${packages[@]}"
+        make_environment "$folder" "$python" "$numpy $(checksum "${usual[@]}")" "${packages[@]}"
         check_libraries "$folder"
         ;;
     libraries)
