@@ -3,8 +3,8 @@
     python scripts/kernel_wheels.py [PLATFORM …]     all platforms, those named, or "here": this machine's own
 
 Prints the wheels' paths. The compiler is zig, a package like any other; the kernel needs no C library, so nothing
-else is needed. Compiler and wheels are kept in ${XDG_CACHE_HOME:-~/.cache}/curvefold; a wheel is built again when
-the sources, the compiler or its flags change. Exits with 1 and a sentence when a wheel cannot be had.
+else is needed. Compiler and wheels are kept in the folder that scripts/cache_folder.sh names; a wheel is built
+again when the sources, the compiler or its flags change. Exits with 1 and a sentence when a wheel cannot be had.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ import tempfile
 import zipfile
 import zlib
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -75,9 +76,12 @@ def this_platform() -> str:
     return f"{system}-{machine or platform.machine().lower()}"
 
 
+@cache
 def cache_folder() -> Path:
-    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    return Path(base) / "curvefold"
+    """Where downloads and what is built are kept, outside the tree."""
+    script = ROOT / "scripts" / "cache_folder.sh"
+    printed = subprocess.run([str(script)], stdout=subprocess.PIPE, text=True, check=True).stdout
+    return Path(printed.removesuffix("\n"))
 
 
 def version() -> str:

@@ -17,9 +17,11 @@ BUNDLED = ("scipy", "shapely", "svgelements")
 
 #: Python's name of the machine, and Blender's.
 PLATFORMS = {
+    "linux-aarch64": "linux_arm64",
     "linux-x86_64": "linux_x64",
     "macosx-arm64": "macos_arm64",
     "macosx-x86_64": "macos_x64",
+    "win-arm64": "windows_arm64",
     "win-amd64": "windows_x64",
 }
 

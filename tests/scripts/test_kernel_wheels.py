@@ -3,11 +3,11 @@
 import base64
 import csv
 import hashlib
-import importlib.util
 import re
 import subprocess
 import sys
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -16,20 +16,9 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-def load(name: str, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """A script, as the module that its siblings import."""
-    spec = importlib.util.spec_from_file_location(name, ROOT / "scripts" / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    monkeypatch.setitem(sys.modules, name, module)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.fixture
-def kernel_wheels(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    return load("kernel_wheels", monkeypatch)
+def kernel_wheels(script: Callable[[str], ModuleType]) -> ModuleType:
+    return script("kernel_wheels")
 
 
 @pytest.fixture
@@ -107,6 +96,7 @@ def test_a_compiler_that_cannot_be_had_is_a_sentence(
     kernel_wheels: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert kernel_wheels.cache_folder() == tmp_path / "curvefold"
     failed = subprocess.CompletedProcess([], 1, "", "long\nERROR: no matching distribution\n")
     monkeypatch.setattr(kernel_wheels.subprocess, "run", lambda *a, **k: failed)
     with pytest.raises(kernel_wheels.BuildError, match=r"could not be installed: ERROR: no matching distribution$"):
@@ -119,9 +109,12 @@ def test_a_compiler_that_cannot_be_had_is_a_sentence(
 
 
 def test_the_extension_is_put_together_without_a_kernel_that_cannot_be_built(
-    kernel_wheels: ModuleType, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    kernel_wheels: ModuleType,
+    script: Callable[[str], ModuleType],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    wheels = load("wheels", monkeypatch)
+    wheels = script("wheels")
 
     def fail(platform: str) -> Path:
         raise kernel_wheels.BuildError("no compiler")
