@@ -1,4 +1,4 @@
-"""Times the direct solver on square grids with the solver's own stencil, beside scipy's splu.
+"""Times the direct solver on square grids with the solver's own stencil: kernel, numpy and scipy, scipy's splu.
 
 Run it: python -m benchmarks.linear_system [--repeats 15]
 """
@@ -6,8 +6,10 @@ Run it: python -m benchmarks.linear_system [--repeats 15]
 from __future__ import annotations
 
 import argparse
+import contextlib
+import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 
 import numpy as np
@@ -15,10 +17,27 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from solver.arrays import FloatArray, IntArray
+from solver.optimize.kernel import SWITCH, linear_algebra
 from solver.optimize.linear_system import LinearSystem
 
 GRID_SIDES = (22, 32, 45, 63, 100)  # about 500, 1,000, 2,000, 4,000, 10,000 vertices
 SPLU_LIMIT = 4000  # vertices; beyond it splu takes seconds
+
+
+@contextlib.contextmanager
+def computing(*, with_kernel: bool) -> Iterator[bool]:
+    """Linear systems made inside use the compiled kernel or not; yields whether they do."""
+    before = os.environ.get(SWITCH)
+    os.environ[SWITCH] = "1" if with_kernel else "0"
+    linear_algebra.cache_clear()
+    try:
+        yield linear_algebra().library is not None
+    finally:
+        if before is None:
+            del os.environ[SWITCH]
+        else:
+            os.environ[SWITCH] = before
+        linear_algebra.cache_clear()
 
 
 def diamond_pattern(side: int) -> tuple[IntArray, IntArray, FloatArray]:
@@ -62,39 +81,41 @@ def time_splu(rows: IntArray, cols: IntArray, values: FloatArray, rhs: FloatArra
 def time_system(system: LinearSystem, values: FloatArray, rhs: FloatArray) -> float:
     """Seconds that ``system`` takes to factorise and solve once."""
     start = time.perf_counter()
-    system.factorize(values)
-    system.solve(rhs)
+    system.factorize(values, rhs)
+    system.solution()
     return time.perf_counter() - start
 
 
-def best_and_median(measure: Callable[[], float], repeats: int) -> tuple[float, float]:
-    """Least and median milliseconds over ``repeats`` after one warm-up."""
-    measure()
-    times = [1e3 * measure() for _ in range(repeats)]
-    return min(times), float(np.median(times))
+def interleaved(measures: list[Callable[[], float]], repeats: int) -> list[tuple[float, float]]:
+    """Least and median milliseconds of each, taken in turns after one warm-up: a busy machine is so to all."""
+    for measure in measures:
+        measure()
+    times = 1e3 * np.array([[measure() for measure in measures] for _ in range(repeats)])
+    return list(zip(times.min(0).tolist(), np.median(times, axis=0).tolist(), strict=True))
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeats", type=int, default=15)
     repeats = parser.parse_args().repeats
-    print("factor + solve in ms, least / median")
-    print("vertices   set-up    Mflop   1 thread        2 threads       splu")
+    with computing(with_kernel=True):
+        print(linear_algebra().phrase)
+    print("factor + solve in ms, least / median, one thread and two; how many times as fast the kernel is")
+    print(f"{'vertices':>8} {'Mflop':>8}   {'kernel':^35}   {'numpy and scipy':^35}   ratio       splu")
     for side in GRID_SIDES:
         rows, cols, plane = diamond_pattern(side)
         size = 3 * len(plane)
         values, rhs = dominant_values(rows, cols, size), np.ones(size)
-        cells = []
-        for threads in (1, 2):
-            start = time.perf_counter()
-            system = LinearSystem(rows, cols, plane, threads=threads)
-            set_up = 1e3 * (time.perf_counter() - start)
-            least, median = best_and_median(partial(time_system, system, values, rhs), repeats)
-            cells.append(f"{least:6.2f} /{median:7.2f}")
-        if len(plane) <= SPLU_LIMIT:
-            least, median = best_and_median(partial(time_splu, rows, cols, values, rhs), 3)
-            cells.append(f"{least:6.1f} /{median:7.1f}")
-        print(f"{len(plane):8d} {set_up:8.0f} {system.flops / 1e6:8.1f}  {'  '.join(cells)}")
+        systems = []
+        for with_kernel in (True, False):
+            with computing(with_kernel=with_kernel):
+                systems += [LinearSystem(rows, cols, plane, threads=threads) for threads in (1, 2)]
+        measures = [partial(time_system, system, values, rhs) for system in systems]
+        times = interleaved(measures, repeats)
+        cells = [f"{least:7.2f} /{median:7.2f}" for least, median in times]
+        ratios = "  ".join(f"{times[k + 2][0] / times[k][0]:4.2f}" for k in (0, 1))
+        splu = f"{1e3 * time_splu(rows, cols, values, rhs):8.1f}" if len(plane) <= SPLU_LIMIT else ""
+        print(f"{len(plane):8d} {systems[0].flops / 1e6:8.1f}   {'  '.join(cells)}   {ratios} {splu}", flush=True)
 
 
 if __name__ == "__main__":

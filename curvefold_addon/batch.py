@@ -7,12 +7,13 @@ import io
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ import bpy
 
 from .. import solver
 from ..solver.files.ruling_files import RULING_FILES
+from ..solver.files.writable import check_writable
 from .bridge import contact_sheet
 from .drawing_list import BatchError, count_sheets, find_drawings
 from .whole_files import whole_file, write_text
@@ -49,6 +51,13 @@ FOLDED_CODES = (0, 1)
 
 #: What is said of a process that ended without results.
 CRASHED = 3
+
+#: How long a process may take to end after it was interrupted, seconds.
+INTERRUPT_SECONDS = 10.0
+#: How often Ctrl-C is looked for, seconds: on Windows nothing else wakes a thread that waits.
+LISTEN_SECONDS = 0.5
+#: What is written before it is moved to its name (``whole_files``, the solver's ``atomic``).
+PARTIAL_FILES = ".*.part*"
 
 #: The package of the whole extension.
 EXTENSION = __package__.rpartition(".")[0]
@@ -99,14 +108,15 @@ class Outcome:
 def run(
     source: Path, out: Path, *, jobs: int, render: bool, options: list[str], reading: solver.ReadOptions
 ) -> int:
-    """Folds all drawings; 0 when every one reached its targets, 1 otherwise. Raises BatchError.
+    """Folds all drawings; 0 when every one reached its targets, 1 otherwise. Raises BatchError, CurvefoldError.
 
     options: the arguments of ``fold``; reading: what they say of how drawings are read
     """
     found = find_drawings(source)
+    check_writable(out, [SUMMARY, CONTACT_SHEET])
     tasks = list(_tasks(_sheets(found.drawings, reading), out, render, options))
     if found.hidden:
-        _print(f"{found.hidden} hidden {'file is' if found.hidden == 1 else 'files are'} passed over")
+        print(f"{found.hidden} hidden {'file is' if found.hidden == 1 else 'files are'} passed over", flush=True)
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -116,7 +126,7 @@ def run(
     with ThreadPoolExecutor(jobs) as pool:
         futures = [pool.submit(crew.work, task) for task in tasks]
         try:
-            for future in as_completed(futures):
+            for future in _as_completed(futures):
                 outcome = future.result()
                 outcomes[outcome.task] = outcome
                 _say(outcome, len(outcomes), len(tasks))
@@ -129,8 +139,16 @@ def run(
     pictures = _save_contact_sheets(out, [_tile(outcome) for outcome in ordered])
     bad = [outcome for outcome in ordered if outcome.exit_code != 0]
     things = "drawings" if len({task.drawing for task in tasks}) == len(tasks) else "sheets"
-    _print(f"{len(ordered) - len(bad)} of {len(ordered)} {things} folded; {out / SUMMARY}, {pictures}")
+    print(f"{len(ordered) - len(bad)} of {len(ordered)} {things} folded; {out / SUMMARY}, {pictures}", flush=True)
     return 1 if bad else 0
+
+
+def _as_completed(futures: Iterable[Future[Outcome]]) -> Iterator[Future[Outcome]]:
+    """Each future when it is done, in a way that Ctrl-C can break off everywhere."""
+    waiting = set(futures)
+    while waiting:
+        done, waiting = wait(waiting, LISTEN_SECONDS, FIRST_COMPLETED)
+        yield from done
 
 
 def _save_contact_sheets(out: Path, tiles: list[contact_sheet.Tile]) -> str:
@@ -195,6 +213,8 @@ class _Crew:
         # Every process would otherwise start as many threads as there are cores.
         for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
             self._environment[name] = str(self._threads)
+        # Their last words are read as UTF-8, whatever the console is; a Blender program writes UTF-8 anyway.
+        self._environment["PYTHONIOENCODING"] = "utf-8:backslashreplace"
 
     def work(self, task: Task) -> Outcome:
         """Folds one drawing unless it is finished. Whatever goes wrong becomes an outcome."""
@@ -204,10 +224,19 @@ class _Crew:
             return Outcome(task, 2, f"{error.filename or task.drawing}: {error.strerror or error}", 0.0)
 
     def stop(self) -> None:
+        """Interrupts every process, and ends those that do not heed it."""
         with self._lock:
             self._stopped = True
-            for process in self._running:
-                process.terminate()
+            running = list(self._running)
+        if os.name == "posix":  # on Windows the console has done so, and nobody else can
+            for process in running:
+                process.send_signal(signal.SIGINT)
+        patience = time.monotonic() + INTERRUPT_SECONDS
+        for process in running:
+            try:
+                process.wait(max(0.0, patience - time.monotonic()))
+            except subprocess.TimeoutExpired:
+                process.kill()
 
     def _fold(self, task: Task) -> Outcome:
         start = time.monotonic()
@@ -224,6 +253,10 @@ class _Crew:
         log = task.folder / LOG
         with log.open("wb") as stream:
             code = self._wait(command, stream)
+        if self._stopped:
+            # A process that did not heed the interrupt has left what it was writing.
+            for partial in task.folder.glob(PARTIAL_FILES):
+                partial.unlink(missing_ok=True)
         seconds = time.monotonic() - start
         if code in FOLDED_CODES and not all((task.folder / name).is_file() for name in task.results):
             code = CRASHED  # Python itself ends with 1 on an error that nobody expected
@@ -349,10 +382,4 @@ def _tile(outcome: Outcome) -> contact_sheet.Tile:
 
 def _say(outcome: Outcome, done: int, total: int) -> None:
     how = "finished before" if outcome.skipped else f"{outcome.seconds:.1f} s"
-    _print(f"[{done}/{total}] {outcome.task.folder.name}: {outcome.word} ({how}). {outcome.sentence}")
-
-
-def _print(words: str) -> None:
-    """Names of files need not be text, nor can every output show all text."""
-    encoding = sys.stdout.encoding or "utf-8"
-    print(words.encode(encoding, "backslashreplace").decode(encoding), flush=True)
+    print(f"[{done}/{total}] {outcome.task.folder.name}: {outcome.word} ({how}). {outcome.sentence}", flush=True)

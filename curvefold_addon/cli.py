@@ -14,9 +14,11 @@ import bpy
 
 from .. import solver
 from ..solver import command_line
-from . import batch, line_materials, paper_material, scene
+from ..solver.console import every_word_printable
+from ..solver.files.writable import check_writable
+from . import batch, interrupts, line_materials, paper_material, scene
 from .bridge import line_objects, mesh, papers
-from .whole_files import OutputError, check_writable, whole_file
+from .whole_files import OutputError, whole_file
 
 COMMAND = "curvefold"
 EXIT_BAD_INPUT = 2
@@ -25,7 +27,16 @@ _command = None
 
 
 def main(argv: list[str]) -> int:
-    """Runs ``fold …``, ``batch …`` or ``verify …`` and returns the exit code."""
+    """Runs ``fold …``, ``batch …`` or ``verify …`` and returns the exit code, also after Ctrl-C."""
+    try:
+        with interrupts.said_once(), every_word_printable():
+            return _main(argv)
+    except KeyboardInterrupt:
+        interrupts.say()
+        return interrupts.INTERRUPTED
+
+
+def _main(argv: list[str]) -> int:
     try:
         arguments, rest = _parser().parse_known_args(argv)
         if rest and arguments.run is not run_batch:
@@ -58,12 +69,13 @@ def run_fold(arguments: argparse.Namespace, rest: list[str]) -> int:
 
     def on_result(result: solver.FoldResult, folder: object) -> None:
         if arguments.render or arguments.blend:
-            _show(result, arguments)
+            with interrupts.end_at_once():
+                _show(result, arguments)
 
     # Before the folding, which may take long.
     for path in (arguments.render, arguments.blend):
         if path is not None:
-            check_writable(path)
+            check_writable(path.parent, [path.name])
     return int(command_line.run_fold(arguments, sys.stderr, on_result=on_result))
 
 
@@ -73,6 +85,7 @@ def run_batch(arguments: argparse.Namespace, rest: list[str]) -> int:
     told = fold_parser(argparse.ArgumentParser(prog=f"{COMMAND} batch")).parse_args(
         ["drawing.svg", "--out", arguments.out, *rest]
     )
+    command_line.description_of(told)
     return batch.run(
         Path(arguments.source),
         Path(arguments.out),
@@ -98,13 +111,18 @@ def _show(result: solver.FoldResult, arguments: argparse.Namespace) -> None:
     if arguments.rulings:
         _add_rulings(paper, result)
     if arguments.render:
-        with whole_file(arguments.render) as partial:
+        with whole_file(arguments.render) as partial, interrupts.end_at_once(partial):
             scene.render(str(partial))
     if arguments.blend:
-        with whole_file(arguments.blend) as partial:
+        with whole_file(arguments.blend) as partial, interrupts.end_at_once(*_written(partial)):
             bpy.ops.wm.save_as_mainfile(
                 filepath=str(partial), check_existing=False, copy=True, compress=True, relative_remap=False
             )
+
+
+def _written(blend: Path) -> tuple[Path, Path]:
+    """A file that is saved, and the one beside it that Blender writes first."""
+    return blend, blend.with_name(f"{blend.name}@")
 
 
 def _add_rulings(paper: bpy.types.Object, result: solver.FoldResult) -> None:
@@ -117,6 +135,7 @@ def _add_rulings(paper: bpy.types.Object, result: solver.FoldResult) -> None:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog=COMMAND, description="Folds paper along curves.", allow_abbrev=False)
+    command_line.add_version_argument(parser)
     commands = parser.add_subparsers(title="commands", required=True, metavar="fold | batch | verify")
     fold = commands.add_parser(
         "fold", help="fold one drawing", description="Folds one drawing.", allow_abbrev=False

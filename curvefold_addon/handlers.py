@@ -7,7 +7,7 @@ from collections.abc import Callable
 import bpy
 from bpy.app.handlers import persistent
 
-from . import drawing_tool, later_work, live
+from . import drawing_tool, film, interface_lock, later_work, live
 
 _said: set[str] = set()
 
@@ -30,13 +30,16 @@ def _quiet(handler: Callable[..., None]) -> Callable[..., None]:
 
 @_quiet
 def depsgraph_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    live.notice([update.id for update in depsgraph.updates])
+    live.notice(scene, [update.id for update in depsgraph.updates])
+    interface_lock.look(scene)
     drawing_tool.look()
 
 
 @_quiet
 def frame_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    live.frame_changed(scene, depsgraph)
+    film.frame_changed(scene, depsgraph)
+    if depsgraph.mode != "RENDER":
+        interface_lock.look(scene)
 
 
 @_quiet
@@ -52,6 +55,7 @@ def undo_begins(*_: object) -> None:
 @_quiet
 def undone(*_: object) -> None:
     live.park()
+    interface_lock.look_at_all()
     drawing_tool.look()
 
 
@@ -64,12 +68,14 @@ def file_closes(*_: object) -> None:
 def file_opened(*_: object) -> None:
     live.forget()
     live.wake_all()
+    interface_lock.look_at_all()
 
 
 @_quiet
 def _enabled() -> None:
     """The file that was open when the extension was enabled: an unfinished fold in it goes on."""
     live.wake_all()
+    interface_lock.look_at_all()
 
 
 _HANDLERS = (

@@ -7,7 +7,7 @@ import bpy
 from .. import solver
 from .bridge import mesh_attributes
 from .bridge.session import Session
-from .bridge.worker import pool
+from .bridge.turns import pool
 
 #: Rulings that are being found in the thread, and of which version of the shape.
 _finding: dict[int, tuple[int, Future[solver.Rulings]]] = {}

@@ -7,9 +7,11 @@ made again whenever it is missing. Nothing here needs a window: ``tick`` is call
 
 import time
 import traceback
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
 
 import bpy
 
@@ -20,7 +22,7 @@ from .bridge.drawing_objects import creases_of, is_part, sheet_of
 from .bridge.report import CreaseReport, Report, describe, describe_crease, describe_fault
 from .bridge.session import Session, carried_session, stored_session
 from .bridge.session import stop as stop_thread
-from .bridge.worker import pool
+from .bridge.turns import pool
 
 __all__ = ["CreaseReport", "Report", "rebuild", "report", "session", "settle", "wake"]
 
@@ -28,6 +30,8 @@ __all__ = ["CreaseReport", "Report", "rebuild", "report", "session", "settle", "
 DRAWING_RESTS = 0.25
 #: Iterations after which a fold that is waited for is left as it is.
 SETTLING = 1500
+#: Of a fold that is waited for it is said after every so many iterations how far it is.
+SAID_EVERY = 10
 #: Scales whose difference is a smaller part of them are the same: their rounding.
 SAME_SCALE = 1e-5
 #: What is said of a paper that does not follow, since following would write over what somebody did to its mesh.
@@ -36,13 +40,12 @@ BY_HAND = "Its mesh was changed by hand: Restore the Paper throws that away, Mak
 
 @dataclass
 class _Watch:
-    """Who moves whom, by ``session_uid``. Objects are kept by name: references die on undo.
+    """Who moves whom in a scene, by ``session_uid``. Objects are kept by name: references die on undo.
 
     papers: mesh -> object that shows it; movers: object or mesh -> papers that follow it; drawings: part of a
     drawing -> papers that are folded from it; objects: how many the scene has.
     """
 
-    scene: str
     objects: int
     papers: dict[int, str] = field(default_factory=dict)
     movers: dict[int, set[int]] = field(default_factory=dict)
@@ -56,13 +59,18 @@ _parked: dict[int, Session] = {}
 _making: dict[int, Future[Session]] = {}
 #: Papers that may have something to do.
 _awake: set[int] = set()
+#: Papers that may have been told something since they were last read.
+_unread: set[int] = set()
+#: When each paper was last shown in a tick, on the clock of ticks.
+_shown: dict[int, float] = {}
 #: Papers whose drawing or resolution may have changed, and when.
 _stale: dict[int, float] = {}
 #: Why a paper cannot be folded as it is now.
 _faults: dict[int, str] = {}
 #: What went wrong with a paper that is not its user's fault; each is printed once.
 _broken: dict[int, str] = {}
-_watch: _Watch | None = None
+#: What is known of each scene, by its ``session_uid``.
+_watches: dict[int, _Watch] = {}
 _start_ticking: Callable[[], None] | None = None
 
 
@@ -97,12 +105,17 @@ def rehook(mesh: bpy.types.Mesh, handle: bpy.types.PropertyGroup) -> None:
     except (solver.CurvefoldError, state.StateError):
         return  # the report says that the handle is off the sheet, or the paper cannot be folded
     if handle.hook is not None:
-        place = hooks.offset_in(handle.hook, paper, bpy.context.evaluated_depsgraph_get(), place)
+        place = hooks.offset_in(handle.hook, paper, _evaluated(_scene_of(mesh)), place)
     handle.offset = place
 
 
-def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
-    """Folds until the paper rests. Blocking. Raises CurvefoldError or StateError when it cannot be folded."""
+def settle(
+    mesh: bpy.types.Mesh, max_iterations: int = SETTLING, progress: Callable[[int], None] | None = None
+) -> None:
+    """Folds until the paper rests. Blocking. Raises CurvefoldError or StateError when it cannot be folded.
+
+    progress(iterations) is called every few iterations.
+    """
     paper = paper_of(mesh)
     if paper is None:
         return
@@ -117,7 +130,13 @@ def settle(mesh: bpy.types.Mesh, max_iterations: int = SETTLING) -> None:
         found = carried_session(wanted, found.snapshot())
         adopt(paper, found)
     _faults.pop(uid, None)
-    found.advance(_inputs(paper, found), max_iterations)
+    inputs = _inputs(paper, found)
+    for done in range(0, max_iterations, SAID_EVERY):
+        found.advance(inputs, min(SAID_EVERY, max_iterations - done))
+        if found.rest is not None:
+            break
+        if progress is not None:
+            progress(done + SAID_EVERY)
     found.write(mesh)
     kept_rulings.keep(mesh, found)
     found.before = None
@@ -278,22 +297,23 @@ def keep_shape(paper: bpy.types.Object) -> Callable[[], None]:
 def drop(mesh: bpy.types.Mesh) -> None:
     """A mesh is no paper any more: nothing is left of what was known about it."""
     uid = mesh.session_uid
-    for known in (_sessions, _parked, _making, _stale, _faults, _broken):
+    for known in (_sessions, _parked, _making, _stale, _shown, _faults, _broken):
         known.pop(uid, None)
     kept_rulings.drop(uid)
-    _awake.discard(uid)
+    for asleep in (_awake, _unread):
+        asleep.discard(uid)
     _look_again()
 
 
 def sheet_here(settings: bpy.types.PropertyGroup) -> bpy.types.Object | None:
     """The sheet of a paper; None where it has none, and where that is not in the scene."""
     sheet = settings.sheet
-    return None if sheet is None or sheet.name not in bpy.context.scene.objects else sheet
+    return None if sheet is None or sheet.name not in _scene_of(settings.id_data).objects else sheet
 
 
 def paper_of(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
-    """The object of the scene that shows a paper: where hooks are, is seen from it."""
-    return _paper(mesh.session_uid)
+    """The object that shows a paper, in the present scene if there is one: where hooks are, is seen from it."""
+    return _paper(mesh.session_uid, _scenes())
 
 
 def active_paper(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -301,21 +321,23 @@ def active_paper(context: bpy.types.Context) -> bpy.types.Object | None:
     when it is a sheet or a crease; where nothing is active, the only one of the scene.
     """
     active = context.active_object
-    watch = _watched()
+    watch = _watched(context.scene)
     if active is None:
-        return _paper(next(iter(watch.papers))) if len(watch.papers) == 1 else None
+        return _paper(next(iter(watch.papers)), [context.scene]) if len(watch.papers) == 1 else None
     if papers.is_paper(active):
         return active
     if is_part(active) and (following := papers_on(sheet_of(active))):
         return following[0]
-    return next((_paper(uid) for uid in sorted(watch.movers.get(active.session_uid, ()))), None)
+    followers = sorted(watch.movers.get(active.session_uid, ()))
+    return next((_paper(uid, [context.scene]) for uid in followers), None)
 
 
 def papers_on(sheet: bpy.types.Object | None) -> list[bpy.types.Object]:
     """The papers of the scene that follow a sheet's drawing, by name."""
     if sheet is None:
         return []
-    found = [_paper(uid) for uid in tuple(_watched().drawings.get(sheet.session_uid, ()))]
+    scene = bpy.context.scene
+    found = [_paper(uid, [scene]) for uid in tuple(_watched(scene).drawings.get(sheet.session_uid, ()))]
     return sorted((paper for paper in found if paper is not None), key=lambda paper: paper.name)
 
 
@@ -332,14 +354,14 @@ def is_at_work() -> bool:
 # --- what handlers and the following operator call ---------------------------------------------------------------
 
 
-def notice(changed: Iterable[bpy.types.ID]) -> None:
-    """Datablocks have changed: wakes the papers that follow them."""
-    watch = _watched()
+def notice(scene: bpy.types.Scene, changed: Iterable[bpy.types.ID]) -> None:
+    """Datablocks have changed as a scene shows them: wakes its papers that follow them."""
+    watch = _watched(scene)
     roused = set()
-    if watch.objects != len(bpy.context.scene.objects):
+    if watch.objects != len(scene.objects):
         # Something was added or removed: a hook, perhaps.
         _look_again()
-        watch = _watched()
+        watch = _watched(scene)
         roused.update(watch.papers)
     for datablock in changed:
         uid = datablock.original.session_uid
@@ -353,36 +375,67 @@ def notice(changed: Iterable[bpy.types.ID]) -> None:
 def tick(budget: float, transforming: bool = False) -> bool:
     """Follows for ``budget`` seconds; whether there is more to do. Never raises.
 
+    Papers are told first, the thread has the time that is left, and then they show what it has found. Where that
+    takes longer than the budget, those that were not shown go first the next time, after the active one.
+
     transforming: whether the user holds something in the hand.
     """
-    deadline = time.perf_counter() + budget
-    waiting = sorted(_awake)
-    for done, uid in enumerate(waiting):
-        share = max(0.0, deadline - time.perf_counter()) / (len(waiting) - done)
-        try:
-            if not _follow(uid, time.perf_counter() + share, transforming):
-                _awake.discard(uid)
-        except (solver.CurvefoldError, state.StateError) as error:
-            _awake.discard(uid)
-            _faults[uid] = str(error)
-        except Exception as error:
-            _awake.discard(uid)
-            if _broken.get(uid) != repr(error):
-                _broken[uid] = repr(error)
-                traceback.print_exc()
+    begin = time.perf_counter()
+    deadline = begin + budget
+    waiting = _in_order()
+    told: list[_Told] = []
+    half = begin + 0.5 * budget
+    for place, uid in enumerate(waiting):
+        if place and time.perf_counter() > half:
+            break
+        if paper := _guarded(uid, partial(_tell, uid, place == 0, deadline, transforming)):
+            told.append(paper)
+    for paper in told:
+        _guarded(paper.uid, partial(paper.session.wait, deadline if len(told) == 1 else half))
+    for place, paper in enumerate(told):
+        if place and time.perf_counter() > deadline:
+            break
+        _shown[paper.uid] = begin
+        _guarded(paper.uid, partial(_show, paper, transforming))
     return bool(_awake)
 
 
-def frame_changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """A frame of an animation: papers with animated hooks take their iterations, whatever the clock says."""
-    for uid in list(_watched().papers):
-        paper = _paper(uid)
-        if paper is None or not _may_move(paper) or not hooks.is_animated(paper):
-            continue
-        try:
-            _follow_frame(paper, scene, depsgraph)
-        except (solver.CurvefoldError, state.StateError) as error:
-            _faults[uid] = str(error)  # the other papers go on
+def animated_papers(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> list[bpy.types.Object]:
+    """The papers of a scene that follow its frames, as far as the evaluated scene has them."""
+    found = [_paper(uid, [scene]) for uid in list(_watched(scene).papers)]
+    return [
+        paper
+        for paper in found
+        if paper is not None
+        and _may_move(paper)
+        and hooks.is_animated(paper)
+        and paper.evaluated_get(depsgraph).is_evaluated
+    ]
+
+
+def follow_frames(scene: bpy.types.Scene) -> bool:
+    """Whether some paper of a scene follows its frames."""
+    found = [_paper(uid, [scene]) for uid in list(_watched(scene).papers)]
+    return any(
+        paper is not None
+        and paper.data.curvefold.live
+        and paper.data.shape_keys is None
+        and linked.is_local(paper.data)
+        and hooks.is_animated(paper)
+        for paper in found
+    )
+
+
+def read_inputs(
+    paper: bpy.types.Object, found: Session, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
+) -> hooks.Inputs:
+    """What a paper is told in an evaluated scene."""
+    return hooks.read(paper, scene, depsgraph, found.net.frame.unit, found.why_not_at, found.drawn)
+
+
+def note_fault(mesh: bpy.types.Mesh, fault: str) -> None:
+    """Why a paper cannot be folded as it is now."""
+    _faults[mesh.session_uid] = fault
 
 
 def park() -> None:
@@ -396,11 +449,11 @@ def park() -> None:
     _broken.clear()
     _look_again()
     _awake.clear()
-    for uid in list(_watched().papers):
-        paper = _paper(uid)
+    for uid in _shown_papers():
+        paper = _paper(uid, _shown_scenes())
         if paper is not None:
             paper.update_tag()  # Blender does not see that its scale was changed after the step was written
-    _rouse(set(_watched().papers))
+    _rouse(_shown_papers())
 
 
 def forget() -> None:
@@ -413,13 +466,15 @@ def forget() -> None:
     _faults.clear()
     _broken.clear()
     _awake.clear()
+    _unread.clear()
+    _shown.clear()
     _look_again()
     stop_thread()
 
 
 def wake_all() -> None:
     """Every live paper looks whether it has something to do."""
-    _rouse(set(_watched().papers))
+    _rouse(_shown_papers())
 
 
 def on_start(start: Callable[[], None] | None) -> None:
@@ -433,26 +488,59 @@ def on_start(start: Callable[[], None] | None) -> None:
 
 def _rouse(papers: set[int]) -> None:
     _awake.update(papers)
+    _unread.update(papers)
     # Without a window nothing ticks.
     if _awake and _start_ticking is not None and not bpy.app.background:
         _start_ticking()
 
 
 def _look_again() -> None:
-    global _watch
-    _watch = None
+    _watches.clear()
 
 
-def _watched() -> _Watch:
-    global _watch
-    scene = bpy.context.scene
-    if _watch is None or _watch.scene != scene.name:
-        _watch = _look(scene)
-    return _watch
+def _watched(scene: bpy.types.Scene) -> _Watch:
+    uid = scene.session_uid
+    if uid not in _watches:
+        _watches[uid] = _look(scene)
+    return _watches[uid]
+
+
+def _shown_scenes() -> list[bpy.types.Scene]:
+    """The present scene, and those that other windows show."""
+    shown = [bpy.context.scene]
+    for manager in bpy.data.window_managers:
+        shown += [window.scene for window in manager.windows if window.scene not in shown]
+    return shown
+
+
+def _scenes() -> list[bpy.types.Scene]:
+    """All scenes, those that are shown first."""
+    shown = _shown_scenes()
+    return [*shown, *(scene for scene in bpy.data.scenes if scene not in shown)]
+
+
+def _shown_papers() -> set[int]:
+    return {uid for scene in _shown_scenes() for uid in _watched(scene).papers}
+
+
+def _scene_of(mesh: bpy.types.Mesh) -> bpy.types.Scene:
+    """The scene in which a paper follows what it is told."""
+    uid = mesh.session_uid
+    return next((scene for scene in _scenes() if uid in _watched(scene).papers), bpy.context.scene)
+
+
+def _evaluated(scene: bpy.types.Scene) -> bpy.types.Depsgraph:
+    """A scene as it is shown, up to date."""
+    if scene == bpy.context.scene:
+        return bpy.context.evaluated_depsgraph_get()
+    windows = (window for manager in bpy.data.window_managers for window in manager.windows)
+    layer = next((window.view_layer for window in windows if window.scene == scene), scene.view_layers[0])
+    layer.update()
+    return layer.depsgraph
 
 
 def _look(scene: bpy.types.Scene) -> _Watch:
-    watch = _Watch(scene.name, len(scene.objects))
+    watch = _Watch(len(scene.objects))
     known = {mesh.session_uid for mesh in bpy.data.meshes if mesh.curvefold.is_paper}
     if not known:
         return watch
@@ -464,8 +552,7 @@ def _look(scene: bpy.types.Scene) -> _Watch:
         watch.papers[uid] = paper.name
         settings = paper.data.curvefold
         movers = hooks.movers(settings)
-        shapes = [mover.data for mover in movers if mover.type == "CURVE"]
-        for mover in (paper, paper.data, *movers, *shapes):
+        for mover in (paper, paper.data, *movers, *hooks.shapes_of(movers)):
             watch.movers.setdefault(mover.session_uid, set()).add(uid)
         if settings.sheet is not None:
             for part in (settings.sheet, *creases_of(settings.sheet)):
@@ -473,17 +560,23 @@ def _look(scene: bpy.types.Scene) -> _Watch:
     return watch
 
 
-def _paper(uid: int) -> bpy.types.Object | None:
+def _paper(uid: int, scenes: Sequence[bpy.types.Scene]) -> bpy.types.Object | None:
+    """The object that shows a paper, in the first of the scenes that has one."""
     for _ in range(2):
-        name = _watched().papers.get(uid)
-        paper = None if name is None else bpy.context.scene.objects.get(name)
-        if paper is not None and paper.type == "MESH" and paper.data.session_uid == uid:
-            return paper
+        for scene in scenes:
+            name = _watched(scene).papers.get(uid)
+            paper = None if name is None else scene.objects.get(name)
+            if paper is not None and paper.type == "MESH" and paper.data.session_uid == uid:
+                return paper
         _look_again()  # renamed, removed, or made since
-    if name is None:
-        return None
     # What is linked may have the same name.
-    meshes = (thing for thing in bpy.context.scene.objects if thing.type == "MESH")
+    meshes = (
+        thing
+        for scene in scenes
+        if uid in _watched(scene).papers
+        for thing in scene.objects
+        if thing.type == "MESH"
+    )
     return next((thing for thing in meshes if thing.data.session_uid == uid), None)
 
 
@@ -495,9 +588,8 @@ def _may_move(paper: bpy.types.Object) -> bool:
 
 
 def _inputs(paper: bpy.types.Object, found: Session) -> hooks.Inputs:
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    scene = bpy.context.scene
-    return hooks.read(paper, scene, depsgraph, found.net.frame.unit, found.why_not_at, found.drawn)
+    scene = _scene_of(paper.data)
+    return read_inputs(paper, found, scene, _evaluated(scene))
 
 
 def _wanted_source(mesh: bpy.types.Mesh) -> state.Source:
@@ -576,60 +668,51 @@ def _take(paper: bpy.types.Object, made: Session) -> None:
     made.take_up(_inputs(paper, made))
 
 
-def _follow_frame(paper: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    found = make_session(paper)
-    before, found.frame = found.frame, scene.frame_current
-    inputs = hooks.read(paper, scene, depsgraph, found.net.frame.unit, found.why_not_at, found.drawn)
-    step = 0 if before is None else scene.frame_current - before
-    if scene.frame_current == scene.frame_start:
-        found.start_anew(inputs, SETTLING)
-    elif 0 < step <= max(1, scene.frame_step):
-        found.advance(inputs, step * paper.data.curvefold.iterations_per_frame)
-    elif bpy.app.background:
-        found.advance(inputs, SETTLING)
-    else:
-        _rouse({paper.data.session_uid})
-        return
-    found.write(paper.data)
-    kept_rulings.keep(paper.data, found)
-    found.before = None
+@dataclass(frozen=True, eq=False)
+class _Told:
+    """A paper that was told what to do in a tick."""
+
+    uid: int
+    mesh: bpy.types.Mesh
+    session: Session
+    inputs: hooks.Inputs
 
 
-def _follow(uid: int, deadline: float, transforming: bool) -> bool:
-    """Works on one paper until the clock says ``deadline``; whether it has more to do."""
-    paper = _paper(uid)
+def _in_order() -> list[int]:
+    """Papers that may have something to do: the active one, then those that were shown longest ago."""
+    active = active_paper(bpy.context)
+    first = None if active is None else active.data.session_uid
+    return sorted(_awake, key=lambda uid: (uid != first, _shown.get(uid, 0.0), uid))
+
+
+def _guarded(uid: int, act: Callable[[], Any]) -> Any:
+    """What ``act`` returns; None when it raises, and then the paper sleeps and says why."""
+    try:
+        return act()
+    except (solver.CurvefoldError, state.StateError) as error:
+        _faults[uid] = str(error)
+    except Exception as error:
+        if _broken.get(uid) != repr(error):
+            _broken[uid] = repr(error)
+            traceback.print_exc()
+    _awake.discard(uid)
+    return None
+
+
+def _tell(uid: int, first: bool, deadline: float, transforming: bool) -> _Told | None:
+    """Tells a paper what its datablocks ask for now; None when it has nothing to show yet, or nothing to do."""
+    paper = _paper(uid, _shown_scenes())
     # Leaving another mode is a change, and wakes it again.
     if paper is None or not _may_move(paper) or paper.mode != "OBJECT":
-        return False
+        _awake.discard(uid)
+        return None
     mesh = paper.data
     _note_scale(paper)
     if is_playing() and hooks.is_animated(paper):
-        return False  # frames count, not the clock; the end of the playback wakes it
-    if uid not in _making and uid not in _sessions:
-        shape = state.load(mesh)
-        parked = _unparked(uid, shape)
-        if parked is None:
-            _making[uid] = pool().submit(stored_session, shape)
-        else:
-            _take(paper, parked)
-    if uid in _making:
-        try:
-            made = _making[uid].result(timeout=max(0.0, deadline - time.perf_counter()))
-        except TimeoutError:
-            return True
-        except (solver.CurvefoldError, state.StateError) as error:
-            if uid not in _sessions:
-                raise
-            _faults[uid] = str(error)  # the drawing cannot be folded; the paper goes on as it was
-        else:
-            _faults.pop(uid, None)
-            if uid in _sessions:
-                adopt(paper, made)
-            else:
-                _take(paper, made)
-        finally:
-            if uid in _making and _making[uid].done():
-                del _making[uid]
+        _awake.discard(uid)
+        return None  # frames count, not the clock; the end of the playback wakes it
+    if not _is_made(paper, deadline if first else 0.0):
+        return None
     found = _sessions[uid]
     if uid in _stale and not transforming and time.monotonic() - _stale[uid] >= DRAWING_RESTS:
         del _stale[uid]
@@ -642,19 +725,65 @@ def _follow(uid: int, deadline: float, transforming: bool) -> bool:
             if not found.source.meets(wanted):
                 found.write(mesh)  # what undo may just have led to
                 _making[uid] = pool().submit(carried_session, wanted, found.snapshot())
-                return True
+                return None
             _faults.pop(uid, None)
             _follow_scale(paper)
-    inputs = _inputs(paper, found)
+    if uid in _unread or found.inputs is None:
+        inputs = _inputs(paper, found)
+        _unread.discard(uid)
+    else:
+        inputs = found.inputs
     if not transforming and found.is_back_at_start(inputs):
         found.return_to_start()
     else:
-        found.follow(inputs, deadline)
+        found.ask(inputs, first)
+    return _Told(uid, mesh, found, inputs)
+
+
+def _is_made(paper: bpy.types.Object, deadline: float) -> bool:
+    """Whether a paper has its session, new when it was made anew; waits for it until ``deadline``."""
+    mesh = paper.data
+    uid = mesh.session_uid
+    if uid not in _making and uid not in _sessions:
+        shape = state.load(mesh)
+        parked = _unparked(uid, shape)
+        if parked is None:
+            _making[uid] = pool().submit(stored_session, shape)
+        else:
+            _take(paper, parked)
+    if uid not in _making:
+        return True
+    try:
+        made = _making[uid].result(timeout=max(0.0, deadline - time.perf_counter()))
+    except TimeoutError:
+        return False
+    except (solver.CurvefoldError, state.StateError) as error:
+        if uid not in _sessions:
+            raise
+        _faults[uid] = str(error)  # the drawing cannot be folded; the paper goes on as it was
+    else:
+        _faults.pop(uid, None)
+        _unread.add(uid)
+        if uid in _sessions:
+            adopt(paper, made)
+        else:
+            _take(paper, made)
+    finally:
+        if uid in _making and _making[uid].done():
+            del _making[uid]
+    return True
+
+
+def _show(paper: _Told, transforming: bool) -> None:
+    """Shows what the thread has found; a paper that has no more to do sleeps."""
+    found, mesh = paper.session, paper.mesh
+    found.collect()
     found.write(mesh)
-    rests = found.rests_with(inputs)
+    rests = found.rests_with(paper.inputs)
     if rests and not transforming:
         found.before = None
-    if rests and not transforming and kept_rulings.find(mesh, found):
-        return True
+    more = rests and not transforming and kept_rulings.find(mesh, found)
     # A hand that holds still may yet be taken back.
-    return not rests or uid in _stale or (transforming and found.before is not None)
+    if more or not rests or paper.uid in _stale or (transforming and found.before is not None):
+        return
+    _awake.discard(paper.uid)

@@ -7,6 +7,7 @@ A Blender program needs no such thing: it is started again with --command.
 
 import importlib
 import os
+import signal
 import sys
 
 
@@ -21,6 +22,9 @@ def main() -> int:
 
 
 if __name__ == "__main__":
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        # Until the command line hears it: Blender would print the traceback of a KeyboardInterrupt and go on.
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
     status = main()
     sys.stdout.flush()
     sys.stderr.flush()

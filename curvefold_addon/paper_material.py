@@ -1,7 +1,8 @@
 """Two-sided paper: another colour on the back, fine fibres, a little light coming through.
 
-The colours are plain inputs of two Principled shaders, the front's first, multiplied by the grain: that is what
-exporters (glTF) understand.
+The colours are plain inputs of two Principled shaders, multiplied by the grain: that is what exporters understand.
+glTF has one colour for both sides, that of the first Principled shader. Up to 5.1 that is the one that was made
+first; later the exporter follows the links, and begins with the last input of a node.
 """
 
 import bpy
@@ -74,8 +75,12 @@ def _new(name: str, front: Color, back: Color) -> bpy.types.Material:
     link(_sum(tree, grains, fibres), bump.inputs["Height"])
 
     sides = nodes.new("ShaderNodeMixShader")
-    link(nodes.new("ShaderNodeNewGeometry").outputs["Backfacing"], sides.inputs["Fac"])
-    for slot, color in ((1, front), (2, back)):
+    facing = nodes.new("ShaderNodeMath")
+    facing.operation = "SUBTRACT"
+    facing.inputs[0].default_value = 1.0
+    link(nodes.new("ShaderNodeNewGeometry").outputs["Backfacing"], facing.inputs[1])
+    link(facing.outputs["Value"], sides.inputs["Fac"])
+    for slot, color in ((2, front), (1, back)):
         link(_surface(tree, color, shade, bump.outputs["Normal"]), sides.inputs[slot])
 
     # What shines through has passed the ink of both sides, so it has one hue on either side.

@@ -3,6 +3,7 @@
 import bpy
 from bpy.props import IntProperty
 
+from ..solver.optimize.kernel import linear_algebra
 from . import keymaps
 
 #: The package of the whole extension.
@@ -28,6 +29,7 @@ class CurvefoldPreferences(bpy.types.AddonPreferences):
     def draw(self, context: bpy.types.Context) -> None:
         self.layout.use_property_split = True
         self.layout.prop(self, "budget")
+        self.layout.label(text=f"Linear algebra: {linear_algebra().phrase}")
         self.layout.label(text="Keys in Object Mode")
         keymaps.draw(self.layout, context)
 

@@ -1,6 +1,5 @@
 """Files that appear whole or not at all."""
 
-import os
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -29,17 +28,6 @@ def whole_file(path: Path) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             partial.unlink()
-
-
-def check_writable(path: Path) -> None:
-    """Raises OutputError when it is certain already that ``path`` cannot be written."""
-    if path.is_dir():
-        raise OutputError(f"{path}: cannot be written: it is a folder")
-    folder = path.parent
-    while not folder.exists() and folder != folder.parent:
-        folder = folder.parent
-    if not folder.is_dir() or not os.access(folder, os.W_OK):
-        raise OutputError(f"{path}: cannot be written: {folder} is not a folder to write to")
 
 
 def write_text(path: Path, text: str) -> None:

@@ -6,10 +6,10 @@
 #                                                user folder in WORK, a path inside the folder
 #
 # SUITE is trixie (Blender 4.3) or sid (5.2). The folder is made and entered by debootstrap and chroot, which
-# only root may use. It takes 1.6 GB in ${XDG_CACHE_HOME:-~/.cache}/curvefold, and one to three minutes.
+# only root may use. It takes 1.6 GB in the folder that scripts/cache_folder.sh names, and one to three minutes.
 set -euo pipefail
 
-cache="${XDG_CACHE_HOME:-$HOME/.cache}/curvefold"
+cache="$("$(dirname "${BASH_SOURCE[0]}")/cache_folder.sh")"
 
 say() { printf '%s\n' "$*" >&2; }
 die() { say "curvefold: $*"; exit 1; }

@@ -3,16 +3,18 @@
 #
 #   scripts/setup.sh solver               .venv in the tree: solver, tests, linters; no Blender
 #   scripts/setup.sh bpy VERSION          Blender VERSION as a module, with the solver's libraries and pytest
-#   scripts/setup.sh bare VERSION         the same without scipy, shapely and svgelements, which must then
-#                                         come from the wheels in a built extension
+#   scripts/setup.sh bare VERSION         the same without scipy, shapely, svgelements and the compiled kernel,
+#                                         which must then come from the wheels in a built extension
+#   scripts/setup.sh libraries PYTHON SET  the solver's libraries that requirements/SET.txt names, and pytest, for
+#                                         that Python: newest, or bundled_windows_arm64 with the numpy of Blender
 #   scripts/setup.sh has-python VERSION   exit 0 when a Python that Blender VERSION needs is there
 #
-# Everything but .venv lives in ${XDG_CACHE_HOME:-~/.cache}/curvefold. A finished environment is used again
-# until what it is made of changes.
+# Everything but .venv lives in the folder that scripts/cache_folder.sh names. A finished environment is used
+# again until what it is made of changes.
 set -euo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
-cache="${XDG_CACHE_HOME:-$HOME/.cache}/curvefold"
+cache="$("$root/scripts/cache_folder.sh")"
 export PIP_DISABLE_PIP_VERSION_CHECK=1
 
 say() { printf '%s\n' "$*" >&2; }
@@ -35,11 +37,11 @@ python_is() { "$1" -c "import sys; sys.exit(not ($2))" >/dev/null 2>&1; }
 # find_python CONDITION NAME...: the first of the named commands (or their siblings kept by pyenv) that runs
 # and meets the condition on sys.version_info.
 find_python() {
-    local condition="$1" name candidate
+    local condition="$1" name candidate pyenv=~/.pyenv
     shift
     for name in "$@"; do
         for candidate in "$name" "/usr/bin/$name" "/usr/local/bin/$name" \
-            "${PYENV_ROOT:-$HOME/.pyenv}"/versions/*/bin/"$name"; do
+            "${PYENV_ROOT:-$pyenv}"/versions/*/bin/"$name"; do
             command -v "$candidate" >/dev/null 2>&1 || continue
             if python_is "$candidate" "$condition"; then
                 command -v "$candidate"
@@ -132,6 +134,22 @@ check_libraries() {
     fi
 }
 
+# install_kernel FOLDER: the compiled kernel, which is an option; without it numpy and scipy do its work.
+install_kernel() {
+    local folder="$1" wheel
+    if [ "${CURVEFOLD_KERNEL:-}" = 0 ] || ! wheel="$("$folder/bin/python" "$root/scripts/kernel_wheels.py" here)"; then
+        say "going on without the compiled kernel"
+        return
+    fi
+    [ "$(cat "$folder/.curvefold-kernel" 2>/dev/null)" = "$(basename "$wheel")" ] && return
+    rm -f "$folder/.curvefold-kernel"
+    if "$folder/bin/python" -m pip install --quiet --no-deps --no-index --force-reinstall "$wheel" >&2; then
+        basename "$wheel" > "$folder/.curvefold-kernel"
+    else
+        say "going on without the compiled kernel: pip could not install $wheel"
+    fi
+}
+
 checksum() { cat "$@" | cksum; }
 
 wheel_folder() { mkdir -p "$cache/wheels"; }
@@ -139,6 +157,8 @@ wheel_folder() { mkdir -p "$cache/wheels"; }
 kind="${1:-}"
 version="${2:-}"
 requirements="$root/requirements"
+# What .venv and the Blenders are made of.
+usual=("$requirements"/{bundled,dev,test}.txt)
 wheel_folder
 case "$kind" in
     solver)
@@ -151,7 +171,8 @@ case "$kind" in
         else
             python="$folder/bin/python"
         fi
-        make_environment "$folder" "$python" "$(checksum "$requirements"/*.txt)" -r "$requirements/dev.txt"
+        make_environment "$folder" "$python" "$(checksum "${usual[@]}")" -r "$requirements/dev.txt"
+        install_kernel "$folder"
         ;;
     bpy|bare)
         [ -n "$version" ] || die "which Blender? scripts/setup.sh $kind VERSION"
@@ -169,15 +190,28 @@ case "$kind" in
         else
             packages+=(-r "$requirements/bundled.txt")
         fi
-        make_environment "$folder" "$python" "$numpy $(checksum "$requirements"/*.txt)" "${packages[@]}"
+        make_environment "$folder" "$python" "$numpy $(checksum "${usual[@]}")" "${packages[@]}"
+        [ "$kind" = bare ] || install_kernel "$folder"
         check_libraries "$folder"
+        ;;
+    libraries)
+        set="${3:-}"
+        [ -f "$requirements/$set.txt" ] || die "which libraries? scripts/setup.sh libraries PYTHON SET"
+        python="$(find_python "sys.version_info[:2] == (${version/./, })" "python$version" python3)" \
+            || die "Python $version is not on this machine"
+        packages=(-r "$requirements/$set.txt" -r "$requirements/test.txt")
+        # The extension bundles no numpy: that is Blender's.
+        [ "$set" = newest ] || packages+=("numpy==$(blender_numpy_version 5.0.1)")
+        folder="$cache/$set-$version"
+        make_environment "$folder" "$python" "$(checksum "$requirements/$set.txt" "$requirements/test.txt")" \
+            "${packages[@]}"
         ;;
     has-python)
         find_blender_python "$version" >/dev/null
         exit
         ;;
     *)
-        die "scripts/setup.sh solver | bpy VERSION | bare VERSION | has-python VERSION"
+        die "scripts/setup.sh solver | bpy VERSION | bare VERSION | libraries PYTHON SET | has-python VERSION"
         ;;
 esac
 printf '%s\n' "$folder/bin/python"

@@ -4,13 +4,13 @@
     python scripts/wheels.py --check    only say whether the manifest lists what it should
 
 The wheels are unmodified files from the package index, taken by pip, for every platform and Python that
-Blender has; Blender picks the right one. They are cached in ${XDG_CACHE_HOME:-~/.cache}/curvefold/bundled.
+Blender has; Blender picks the right one. They are cached in the folder that scripts/cache_folder.sh names.
+The compiled kernel's own wheels are built (scripts/kernel_wheels.py); where that fails, the zips go without them.
 """
 
 from __future__ import annotations
 
 import argparse
-import os
 import re
 import shutil
 import subprocess
@@ -18,9 +18,11 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import kernel_wheels
+
 ROOT = Path(__file__).resolve().parent.parent
 MANIFEST = ROOT / "blender_manifest.toml"
-REQUIREMENTS = ROOT / "requirements" / "bundled.txt"
+REQUIREMENTS = ROOT / "requirements"
 FOLDER = ROOT / "wheels"
 
 PYTHONS = ("311", "313")
@@ -28,23 +30,28 @@ PYTHONS = ("311", "313")
 #: For each of Blender's platforms, the wheel platforms that run there, as pip names them. The macOS ones
 #: stop at the version where scipy still brings its own linear algebra.
 PLATFORMS = {
+    "linux-arm64": ("manylinux_2_28_aarch64", "manylinux_2_17_aarch64", "manylinux2014_aarch64"),
     "linux-x64": ("manylinux_2_28_x86_64", "manylinux_2_17_x86_64", "manylinux2014_x86_64"),
     "macos-arm64": ("macosx_12_0_arm64", "macosx_11_0_arm64"),
     "macos-x64": ("macosx_10_13_x86_64", "macosx_10_9_x86_64"),
+    "windows-arm64": ("win_arm64",),
     "windows-x64": ("win_amd64",),
 }
+#: Which libraries a platform gets, where not those of bundled.txt.
+OTHER_REQUIREMENTS = {"windows-arm64": "bundled_windows_arm64.txt"}
 
 LIST = re.compile(r"^wheels = \[.*?^\]$", re.MULTILINE | re.DOTALL)
 
 
-def cache_folder() -> Path:
-    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    return Path(base) / "curvefold" / "bundled"
+def bundled_folder() -> Path:
+    """Where the wheels of the package index are kept."""
+    return kernel_wheels.cache_folder() / "bundled"
 
 
-def requirements() -> list[tuple[str, str]]:
-    """(name, version) of each bundled library."""
-    lines = (line.split("#")[0].strip() for line in REQUIREMENTS.read_text(encoding="utf-8").splitlines())
+def requirements(platform: str) -> list[tuple[str, str]]:
+    """(name, version) of each library that is bundled for one of Blender's platforms."""
+    path = REQUIREMENTS / OTHER_REQUIREMENTS.get(platform, "bundled.txt")
+    lines = (line.split("#")[0].strip() for line in path.read_text(encoding="utf-8").splitlines())
     pairs = []
     for line in filter(None, lines):
         name, version = line.split("==")
@@ -54,15 +61,15 @@ def requirements() -> list[tuple[str, str]]:
 
 def wanted() -> Iterator[tuple[str, str, str, str]]:
     """(name, version, python, platform) of every wheel; a pure one comes up for each and is found again."""
-    for name, version in requirements():
-        for python in PYTHONS:
-            for platform in PLATFORMS:
+    for platform in PLATFORMS:
+        for name, version in requirements(platform):
+            for python in PYTHONS:
                 yield name, version, python, platform
 
 
 def find(name: str, version: str, python: str, platform: str) -> Path | None:
     """The cached wheel for this Python and platform, if it is there."""
-    for path in sorted(cache_folder().glob(f"{name}-{version}-*.whl")):
+    for path in sorted(bundled_folder().glob(f"{name}-{version}-*.whl")):
         pythons, abi, tags = path.stem.split("-")[2:]
         if abi == "none" and tags == "any":
             return path
@@ -78,18 +85,27 @@ def fetch(name: str, version: str, python: str, platform: str) -> Path:
     for tag in PLATFORMS[platform]:
         command += ["--platform", tag]
     # In a folder of its own first: an interrupted download must not look like a wheel.
-    partial = cache_folder() / "partial"
+    partial = bundled_folder() / "partial"
     shutil.rmtree(partial, ignore_errors=True)
     partial.mkdir(parents=True)
     print(f"fetching {name} {version} for Python {python[0]}.{python[1:]} on {platform}", flush=True)
     subprocess.run([*command, "--dest", str(partial), f"{name}=={version}"], check=True)
     for path in partial.glob("*.whl"):
-        path.replace(cache_folder() / path.name)
+        path.replace(bundled_folder() / path.name)
     shutil.rmtree(partial)
     found = find(name, version, python, platform)
     if found is None:
         raise SystemExit(f"no wheel of {name} {version} for Python {python} on {platform}")
     return found
+
+
+def kernel_wheel(platform: str) -> Path | None:
+    """The compiled kernel's wheel for a platform; None, and a line that says why, where it cannot be built."""
+    try:
+        return kernel_wheels.wheel(platform)
+    except (kernel_wheels.BuildError, OSError) as error:
+        print(f"the extension for {platform} goes without the compiled kernel: {error}", flush=True)
+        return None
 
 
 def manifest_list(names: list[str]) -> str:
@@ -106,6 +122,8 @@ def main() -> None:
     wheels = {}
     for want in wanted():
         path = find(*want) or fetch(*want)
+        wheels[path.name] = path
+    for path in filter(None, map(kernel_wheel, PLATFORMS)):
         wheels[path.name] = path
 
     text = MANIFEST.read_text(encoding="utf-8")

@@ -27,7 +27,7 @@ from .files.mesh_reading import read_mesh
 from .files.results import write_results
 from .fold import FoldResult, Outcome, fold
 from .folding import FoldModel, SqpReport, Status
-from .gauss_image import GaussImage, gauss_image
+from .gauss_image import GaussImage, gauss_area, gauss_image
 from .measurement import Measurement, measure
 from .net.build import build_net
 from .net.piecewise_dog import PiecewiseDog
@@ -80,6 +80,7 @@ __all__ = [
     "build_net",
     "choose_resolution",
     "fold",
+    "gauss_area",
     "gauss_image",
     "measure",
     "read_description",

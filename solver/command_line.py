@@ -11,20 +11,25 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, TextIO
 
+from .console import every_word_printable
 from .description import AUTO, FoldDescription, read_description, read_handles
 from .errors import CurvefoldError
 from .files.mesh_reading import read_mesh
-from .files.results import FOLD_NAME, write_results
+from .files.results import FOLD_NAME, result_names, write_results
 from .files.ruling_files import RULINGS_SVG
+from .files.writable import check_writable
 from .fold import FoldResult, fold, in_words
 from .folding import SqpReport
 from .pattern.read_options import BORDERS, UNITS_MM, ReadOptions
 from .pattern.reading import DRAWING_SUFFIXES, read_pattern
 from .verify_mesh import verdict, verify_mesh
+from .version import in_words as version_in_words
 
 #: Exit codes: everything asked was reached, or a mesh is paper; folded, but not all that was asked, or a mesh is no
 #: paper; the input cannot be used.
 REACHED, NOT_REACHED, BAD_INPUT = 0, 1, 2
+#: The exit code after Ctrl-C, as shells have it: 128 and the number of the signal.
+INTERRUPTED = 130
 #: Seconds between two lines of progress.
 _PROGRESS_SECONDS = 1.0
 
@@ -70,6 +75,19 @@ def add_fold_arguments(parser: argparse.ArgumentParser) -> None:
         help="write the rulings (rulings.obj, rulings.svg) and the Gauss image (gauss_image.obj) too",
     )  # fmt: skip
     _add_read_arguments(parser)
+
+
+def add_version_argument(parser: argparse.ArgumentParser) -> None:
+    """``--version``: which Curvefold this is, and what solves its linear systems."""
+    parser.add_argument("--version", action=_Version, nargs=0, help="print the version and what computes, and exit")
+
+
+class _Version(argparse.Action):
+    """Finds out what to print only when it is asked."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        print(version_in_words())
+        parser.exit()
 
 
 def _add_read_arguments(parser: argparse.ArgumentParser) -> None:
@@ -139,6 +157,7 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
         folder = Path(args.out)
         _check_apart(Path(args.pattern), folder)
         description = description_of(args)
+        check_writable(folder, result_names(args.rulings))
         pattern = read_pattern(args.pattern, read_options_of(args))
         # Before the fold, which may take long: whoever sees that the drawing was misread need not wait for it.
         said = pattern.notes
@@ -223,8 +242,9 @@ def _progress(stream: TextIO) -> Callable[[int, SqpReport], None]:
 
 
 def main(argv: list[str] | None, stream: TextIO) -> int:
-    """``python -m solver``: without Blender."""
+    """``python -m solver``: without Blender. Returns the exit code, also after Ctrl-C."""
     parser = argparse.ArgumentParser(prog="python -m solver", description="Fold paper along curves.")
+    add_version_argument(parser)
     commands = parser.add_subparsers(dest="command", required=True)
     command = commands.add_parser("fold", help="fold a drawing and write OBJ, FOLD and a report")
     command.add_argument("pattern", metavar="PATTERN", help=f"the drawing to fold ({', '.join(DRAWING_SUFFIXES)})")
@@ -234,5 +254,10 @@ def main(argv: list[str] | None, stream: TextIO) -> int:
     command = commands.add_parser("verify", help="check whether a folded mesh is paper")
     add_verify_arguments(command)
     command.set_defaults(run=run_verify)
-    arguments = parser.parse_args(argv)
-    return int(arguments.run(arguments, stream))
+    try:
+        with every_word_printable():
+            arguments = parser.parse_args(argv)
+            return int(arguments.run(arguments, stream))
+    except KeyboardInterrupt:
+        print("interrupted", file=stream)
+        return INTERRUPTED

@@ -27,7 +27,7 @@ from .pattern.crease_pattern import CreasePattern
 from .verify import verify
 
 #: Drawn sides that are held count as better when the median angle is so many times as large, at a mean stretch that
-#: is at most so many times as large.
+#: is at most so many times as large, or within what paper may show.
 _DEEPER, _AS_WHOLE = 1.1, 1.2
 #: What is said then.
 _HELD = "folded with the sides of the drawing held, since left free the creases came less far"
@@ -268,7 +268,7 @@ def come_to_rest(model: FoldModel, description: FoldDescription, progress: Progr
     """
     rest = _rest(model, description, progress, 0)
     if rest.status in (Outcome.SHALLOW, Outcome.NOT_FOLDED) and description.assignments == "free":
-        rest = _with_drawn_sides(model, description, progress, rest)
+        rest = _with_drawn_sides(model.net, description, progress, rest)
     creased = len(model.net.chain_crease) > 0
     may_help = rest.status in _WORTH_ANOTHER_WAY and description.weights.fold_condition > 0 and creased
     if not (may_help and description.handles) or _too_far_apart(description.handles, model.net):
@@ -284,27 +284,26 @@ def come_to_rest(model: FoldModel, description: FoldDescription, progress: Progr
 
 
 def _with_drawn_sides(
-    model: FoldModel, description: FoldDescription, progress: Progress | None, free: Rest
+    net: PiecewiseDog, description: FoldDescription, progress: Progress | None, free: Rest
 ) -> Rest:
     """The fold with the drawing's sides held, where it carries both and the drive comes farther with them."""
-    letters = model.net.crease_letters
-    if description.angle is None or not {"M", "V"} <= set(letters):
+    if description.angle is None or not {"M", "V"} <= set(net.crease_letters):
         return free
-    held = FoldModel(model.net, weights=description.weights)
-    held.set_assignments(letters)
+    model = FoldModel(net, weights=description.weights)
+    model.set_assignments(net.crease_letters)
     try:
-        held.set_controls(description.controls)
+        model.set_controls(description.controls)
     except DescriptionError:
         return free  # a control asks for another side
-    held.set_handles(description.handles)
-    held.set_fold_angle(description.angle)
-    rest = _rest(held, description, progress, free.iterations)
-    angles = [fold_angle_quantiles(one.measurement)[1] for one in (free, rest)]
-    stretch = [float(one.measurement.stretch.mean()) for one in (free, rest)]
+    model.set_handles(description.handles)
+    model.set_fold_angle(description.angle)
+    held = _rest(model, description, progress, free.iterations)
+    angles = [fold_angle_quantiles(one.measurement)[1] for one in (free, held)]
+    stretch = [float(one.measurement.stretch.mean()) for one in (free, held)]
     deeper = angles[1] >= _DEEPER * angles[0] and stretch[1] <= max(_AS_WHOLE * stretch[0], MAX_MEAN_STRETCH)
-    if not rest.status.ok and not (deeper and rest.status is Outcome.SHALLOW):
-        return replace(free, iterations=rest.iterations)
-    return replace(rest, detail=f"{rest.detail}; {_HELD}")
+    if held.status.ok or (deeper and held.status is Outcome.SHALLOW):
+        return replace(held, detail=f"{held.detail}; {_HELD}")
+    return replace(free, iterations=held.iterations)
 
 
 def _rest(model: FoldModel, description: FoldDescription, progress: Progress | None, before: int) -> Rest:

@@ -20,6 +20,7 @@ from ...solver.pattern.arrangement import sheet_polygon, snap_tolerance
 from ...solver.pattern.rings import JOIN, outer_rings
 from ...solver.pattern.segments import MAX_POINTS, Curve, Segment, Subpath, sample
 from . import drawing_objects
+from .evaluated_curves import control_strands, others_than_on_points
 from .mesh import metres_per_unit
 from .placing import matrix_on, mean_scale, world_matrix
 from .splines import Strand, add_bezier_spline, add_poly_spline, read_strands
@@ -32,8 +33,6 @@ FLAT = 1e-3
 EVEN = 1e-3
 #: What is nearer to the border than this is border, in snap tolerances.
 _ALONG_BORDER = 1e-3
-#: Modifiers that Blender always applies to control points; others only when they are told to.
-_ON_CONTROL_POINTS = {"HOOK", "SOFT_BODY", "MESH_DEFORM"}
 
 #: Between the sheets of files that are added together, relative to the width of the first file's.
 ROW_GAP = 0.1
@@ -159,17 +158,7 @@ def _whole(crease: solver.Crease) -> Array:
 
 def shown_strands(curve_object: Any) -> list[Strand]:
     """The splines of a Curve object as hooks, shape keys and modifiers on control points leave them."""
-    data = curve_object.data
-    if not data.shape_keys and not any(modifier.show_viewport for modifier in curve_object.modifiers):
-        return read_strands(data)
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    evaluated = curve_object.evaluated_get(depsgraph)
-    try:
-        strands = read_strands(evaluated.to_curve(depsgraph, apply_modifiers=True))
-    except RuntimeError:  # hidden from the view layer, so Blender does not evaluate it
-        return read_strands(data)
-    evaluated.to_curve_clear()
-    return strands
+    return control_strands(curve_object, bpy.context.evaluated_depsgraph_get())
 
 
 class _Reading:
@@ -323,9 +312,8 @@ class _Reading:
         return True
 
     def _check_modifiers(self, item: Any) -> None:
-        for modifier in item.modifiers:
-            on_points = modifier.type in _ON_CONTROL_POINTS or getattr(modifier, "use_apply_on_spline", False)
-            if modifier.show_viewport and not on_points:
+        for modifier in others_than_on_points(item.modifiers):
+            if modifier.show_viewport:
                 self.trouble(f"the paper does not see its modifier {modifier.name}; apply it", item, None)
 
     # ---- both

@@ -16,6 +16,7 @@ from ...solver.controls.control import Control
 from ...solver.description import LEAST_FOLD
 from . import controls as crease_controls
 from .curve_targets import target_points
+from .evaluated_curves import line_strands
 
 Point = tuple[float, float]
 
@@ -133,7 +134,12 @@ def read(
         indices.append(index)
 
     def curve_points(item: Any) -> tuple[crease_controls.Place, ...]:
-        return target_points(item, scene, lambda curve: hook_matrix(curve, paper, depsgraph))
+        return target_points(
+            item,
+            scene,
+            lambda curve: hook_matrix(curve, paper, depsgraph),
+            lambda curve: line_strands(curve, depsgraph),
+        )
 
     return with_controls(settings, values, tuple(handles), drawn, curve_points, tuple(indices), tuple(faults))
 
@@ -189,18 +195,32 @@ def is_animated(paper: Any) -> bool:
     mesh = paper.data
     if mesh.animation_data is not None or _moves(paper):
         return True
-    return any(_moves(thing) or _changes(thing) for thing in movers(mesh.curvefold))
+    things = movers(mesh.curvefold)
+    return any(map(_moves, things)) or any(shape.animation_data is not None for shape in shapes_of(things))
 
 
 def movers(settings: Any) -> list[Any]:
     """The objects whose places and shapes move the paper."""
     hooks = [entry.hook for entry in settings.handles if entry.hook is not None]
-    return hooks + [entry.curve for entry in settings.creases if entry.flow == "OBJECT" and entry.curve is not None]
+    curves = [entry.curve for entry in settings.creases if entry.flow == "OBJECT" and entry.curve is not None]
+    return [*hooks, *curves, *(thing for curve in curves for thing in _used_by_modifiers(curve))]
 
 
-def _changes(thing: Any) -> bool:
-    """Whether the shape of a curve object is animated."""
-    return thing.type == "CURVE" and thing.data.animation_data is not None
+def shapes_of(things: Sequence[Any]) -> list[Any]:
+    """The datablocks that give the curves among ``things`` their shapes."""
+    curves = [thing.data for thing in things if thing.type == "CURVE"]
+    return [*curves, *(data.shape_keys for data in curves if data.shape_keys is not None)]
+
+
+def _used_by_modifiers(thing: Any) -> list[Any]:
+    """The objects that the modifiers of an object look at."""
+    named = [
+        getattr(modifier, field.identifier)
+        for modifier in thing.modifiers
+        for field in modifier.bl_rna.properties
+        if field.type == "POINTER" and field.fixed_type.identifier == "Object"
+    ]
+    return [other for other in named if other is not None]
 
 
 def _moves(thing: Any) -> bool:

@@ -170,10 +170,15 @@ def write(mesh: Any, flat_uv: str, layers: Layers) -> None:
 
 
 def chosen_maps(mesh: Any) -> tuple[str, str] | None:
-    """Which UV map is shown and which is rendered; None where there is none."""
+    """Which UV map is shown and which is rendered, empty where none is chosen; None where there is none.
+
+    In 5.2 none is chosen any more when the chosen one was removed; before, the next one was.
+    """
     if not len(mesh.uv_layers):
         return None
-    return mesh.uv_layers.active.name, next(layer.name for layer in mesh.uv_layers if layer.active_render)
+    shown = mesh.uv_layers.active
+    rendered = next((layer.name for layer in mesh.uv_layers if layer.active_render), "")
+    return "" if shown is None else shown.name, rendered
 
 
 def choose_maps(mesh: Any, chosen: tuple[str, str]) -> None:

@@ -17,6 +17,7 @@ from .curve_targets import target_points
 from .kept_controls import keep_controls
 from .nets import drawn_of
 from .session import Session
+from .splines import read_strands
 
 if TYPE_CHECKING:
     from ...solver import FoldResult
@@ -94,6 +95,6 @@ def _told(paper: Any, source: state.Source) -> hooks.Inputs:
     scene = paper.users_scene[0] if paper.users_scene else bpy.context.scene
 
     def curve_points(item: Any) -> tuple[controls.Place, ...]:
-        return target_points(item, scene, lambda curve: here)
+        return target_points(item, scene, lambda curve: here, lambda curve: read_strands(curve.data))
 
     return hooks.with_controls(settings, settings, handles, drawn_of(source), curve_points)

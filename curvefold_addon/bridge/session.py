@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from ...solver import Handle, HandleError, Measurement, PiecewiseDog, SqpReport, Status, measure
 from ...solver.controls.pull import Finding
 from ...solver.net.carry_over import carry_over
-from . import by_hand, mesh_attributes, nets, state, worker
+from . import by_hand, mesh_attributes, nets, state, turns
 from . import mesh as surface
+from .film import Film
 from .hooks import SAME_TARGET, WIDTH, Inputs, handles_begin, same
 from .nets import choose, drawn_of, net_of
 from .worker import Step, Worker
@@ -35,7 +36,7 @@ _versions = count()
 
 def stop() -> None:
     """Ends the thread and forgets what could be made again."""
-    worker.stop()
+    turns.stop()
     _ends.clear()
     nets.forget()
     by_hand.forget()
@@ -63,6 +64,26 @@ class Rest:
 
 
 @dataclass(frozen=True, eq=False)
+class Ahead:
+    """How a session will be. values: of what moves with its shape, by their names"""
+
+    values: Mapping[str, Any]
+
+    @property
+    def positions(self) -> Array:
+        """(V,3)"""
+        positions: Array = self.values["positions"]
+        return positions
+
+
+#: What moves with the shape of a session.
+_MOVES = (
+    *("positions", "rest", "before", "run", "origin", "failed", "inputs", "report", "measurement", "judgement"),
+    *("iterations", "milliseconds", "_taken", "_counted"),
+)
+
+
+@dataclass(frozen=True, eq=False)
 class Snapshot:
     """A session at one moment, for another thread."""
 
@@ -79,7 +100,8 @@ class Session:
     drawn        the creases as they are drawn
     judgement    what the thread has said of the shape; None when it has said nothing yet
     run          the name of the motion, in the .blend too; empty when it has none yet
-    frame        the last frame of an animation that the paper has followed
+    film         the frames of an animation that the paper has followed
+    ahead        where the paper would be after the next frame, as long as it stays; None when nobody has looked
     failed       whether the numbers ran away; the last good shape is kept
     ruled        the version of the shape whose rulings the mesh has, when it is asked for them
     """
@@ -102,10 +124,11 @@ class Session:
         self.judgement: Judgement | None = None
         self.iterations = 0
         self.milliseconds = 0.0
-        self.frame: int | None = None
+        self.film = Film(self)
         self._worker = Worker(net, positions)
         self._taken: Step | None = None
         self._counted = 0
+        self.ahead: Ahead | None = None
         self._written = positions
         self._marked: Measurement | None = None
         self._anew: Rest | None = None
@@ -169,23 +192,33 @@ class Session:
 
     # --- moving ------------------------------------------------------------------------------------------
 
-    def follow(self, inputs: Inputs, deadline: float) -> None:
-        """Iterates until the clock (``time.perf_counter``) says ``deadline`` or the paper rests.
-
-        The thread goes on afterwards. Raises what went wrong in it.
-        """
+    def ask(self, inputs: Inputs, first: bool = False) -> None:
+        """Lets the thread iterate until the paper rests; before those of others, when it is the first."""
         self.inputs = inputs
         if self.rests_with(inputs):
             return
+        self._stay()
         self._leave_rest()
-        self._worker.work(inputs, deadline)
-        self._take(self._worker.newest)
+        self._worker.ask(inputs, first)
+
+    def wait(self, deadline: float) -> None:
+        """Waits until the clock (``time.perf_counter``) says ``deadline`` or the thread has nothing to do.
+
+        Raises what went wrong in it.
+        """
+        self._worker.wait(deadline)
+
+    def collect(self) -> None:
+        """Takes over what the thread has found."""
+        if self.ahead is None:
+            self._take(self._worker.newest)
 
     def advance(self, inputs: Inputs, iterations: int) -> None:
         """Exactly so many iterations, fewer when the paper comes to rest. Blocking."""
-        if self._worker.is_running:
+        if self.ahead is None and (self._worker.is_running or self._worker.newest is not self._taken):
             # Where it stopped depends on the clock: from the shape that is shown, it does not.
             self._begin_at(self.positions)
+        self._stay()
         self.inputs = inputs
         done = 0
         while done < iterations and not self.rests_with(inputs):
@@ -193,6 +226,24 @@ class Session:
             step = self._worker.advance(inputs, iterations - done)
             self._take(step)
             done += max(1, step.report.iterations)
+
+    def look_ahead(self, inputs: Inputs, iterations: int) -> Ahead:
+        """How the paper will be when it is told this (``advance``), where it may go at once (``arrive``).
+
+        Now it stays as it is. Blocking.
+        """
+        present = {name: getattr(self, name) for name in _MOVES}
+        self.advance(inputs, iterations)
+        ahead = Ahead({name: getattr(self, name) for name in _MOVES})
+        self._set(present)
+        self.ahead = ahead
+        return ahead
+
+    def arrive(self, ahead: Ahead) -> None:
+        """Goes where the paper was last seen ahead. It must not have moved since."""
+        assert self.ahead is ahead
+        self._set(ahead.values)
+        self.ahead = None
 
     def move_to(self, positions: Array, rest: Rest | None) -> None:
         """Puts the paper somewhere else at once; at a rest when one is given."""
@@ -203,12 +254,12 @@ class Session:
 
     def keep_shape(self) -> Callable[[], None]:
         """What is returned puts the paper back to how it is now, bit for bit."""
-        frame, numbers, positions = self.frame, self.rest, self.positions
+        frame, numbers, positions = self.film.frame, self.rest, self.positions
         measurement, judgement = self.measurement, self.judgement
 
         def put_back() -> None:
             self.move_to(positions, None if numbers is None else Rest(numbers, positions, measurement, judgement))
-            self.frame = frame
+            self.film.leave(frame)
 
         return put_back
 
@@ -236,7 +287,7 @@ class Session:
         """The shape that a flat sheet takes when it is told this, whatever the paper did before. Blocking."""
         if self._anew is None or not np.array_equal(self._anew.numbers, inputs.numbers(), equal_nan=True):
             self._worker.join()
-            self._worker = Worker(self.net, self.positions)
+            self._worker, self.ahead = Worker(self.net, self.positions), None
             self.lay_flat()
             self.advance(inputs, iterations)
             self._anew = Rest(inputs.numbers(), self.positions, self.measurement, self.judgement)
@@ -278,8 +329,18 @@ class Session:
         if self.failed:
             self._begin_at(self.positions)
 
+    def _set(self, values: Mapping[str, Any]) -> None:
+        for name, value in values.items():
+            setattr(self, name, value)
+
+    def _stay(self) -> None:
+        """Another motion begins than the one that was seen ahead."""
+        if self.ahead is not None:
+            self._begin_at(self.positions)
+
     def _begin_at(self, positions: Array) -> None:
         self._worker = self._worker.again(positions)
+        self.ahead = None
         self._taken, self._counted = None, 0
         self.report, self.failed, self.judgement = None, False, None
         self.positions = positions
@@ -318,6 +379,12 @@ class Session:
             _ends[self.run] = _End(self.source, self.origin, rest)
             while len(_ends) > _KEPT_ENDS:
                 del _ends[next(iter(_ends))]
+
+    def show(self, mesh: Any, positions: Array) -> None:
+        """Shows another shape than the present one for a moment: nothing of it is kept on the datablock."""
+        shown = self.net.render_map.apply(positions)
+        if surface.has_geometry_of(mesh, self.net.render_map) and not surface.shows(mesh, shown):
+            surface.write_positions(mesh, shown)
 
     def _show(self, mesh: Any) -> None:
         """Who calls has seen to it that nobody has changed the geometry by hand (``by_hand``)."""

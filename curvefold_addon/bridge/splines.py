@@ -15,9 +15,9 @@ Array = NDArray[np.float64]
 
 #: How far cubics may be from a NURBS curve that they stand for, relative to its size: single precision.
 _NURBS_ERROR = 1e-7
-#: Cubics in one span of a NURBS curve at most; a usual one needs from 1 to 16, and with more of them the error
-#: falls sixteenfold each time they are doubled. Where it does not, weights of both signs have made a pole.
-_USUAL_CUBICS_IN_SPAN, _MOST_CUBICS_IN_SPAN = 16, 256
+#: Cubics in one span of a NURBS curve at most; a usual one needs from 1 to 16, one of degree 39 up to 2,048. When
+#: they are doubled, the error falls sixteenfold. Where it does not, weights of both signs have made a pole.
+_USUAL_CUBICS_IN_SPAN, _MOST_CUBICS_IN_SPAN = 16, 2048
 #: A segment whose handles lie this near to its chord (relative to the chord) is straight: single precision.
 _STRAIGHT = 1e-6
 
@@ -118,18 +118,26 @@ def nurbs_knots(count: int, order: int, cyclic: bool, endpoint: bool, bezier: bo
 
 def _hermite_cubics(coefficients: Array, lengths: Array) -> Array:
     """Cubics along weighted polynomials (order, pieces, 4), highest power of the distance from the middle of the
-    piece first: as many as they need."""
-    parts, before = 1, np.inf
-    while True:
-        place, tangent = _evaluate(coefficients, lengths, 2 * parts)
+    piece first: for each piece as many as it needs."""
+    found: dict[int, Array] = {}
+    open_pieces = np.arange(len(lengths))
+    before = np.full(len(lengths), np.inf)
+    parts, size = 1, 0.0
+    while len(open_pieces):
+        place, tangent = _evaluate(coefficients[:, open_pieces], lengths[open_pieces], 2 * parts)
         start, middle, end = place[:, :-2:2], place[:, 1::2], place[:, 2::2]
         third = tangent / (3.0 * parts)
         first, second = start + third[:, :-2:2], end - third[:, 2::2]
-        miss = np.abs(0.125 * (start + end) + 0.375 * (first + second) - middle).max()
-        enough = miss <= _NURBS_ERROR * np.ptp(place, axis=(0, 1)).max() or parts >= _MOST_CUBICS_IN_SPAN
-        if enough or (parts > _USUAL_CUBICS_IN_SPAN and not miss < 0.5 * before):
-            return np.stack([start, first, second, end], axis=2).reshape(-1, 4, 3)
-        parts, before = 2 * parts, miss
+        miss = np.abs(0.125 * (start + end) + 0.375 * (first + second) - middle).max(axis=(1, 2))
+        size = np.fmax(size, np.ptp(place, axis=(0, 1)).max())
+        enough = (miss <= _NURBS_ERROR * size) | (parts >= _MOST_CUBICS_IN_SPAN)
+        if parts > _USUAL_CUBICS_IN_SPAN:
+            enough |= ~(miss < 0.5 * before)
+        cubics = np.stack([start, first, second, end], axis=2)
+        found |= zip(open_pieces[enough].tolist(), cubics[enough], strict=True)
+        open_pieces, before = open_pieces[~enough], miss[~enough]
+        parts *= 2
+    return np.concatenate([found[piece] for piece in range(len(lengths))])
 
 
 def _evaluate(coefficients: Array, lengths: Array, parts: int) -> tuple[Array, Array]:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import time
-from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
-from threading import Event
+from threading import Event, Lock
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,33 +12,14 @@ from numpy.typing import NDArray
 from ...solver import DescriptionError, FoldModel, Measurement, PiecewiseDog, SqpReport, Status, measure
 from ...solver.controls.pull import Finding
 from ...solver.controls.registry import control_label
+from . import turns
 from .controls import in_users_words
 from .hooks import Inputs
 
-#: A job ends after so many seconds, so that other papers have their turn and nothing runs when nobody asks.
-_TURN = 0.25
 #: A moving paper is measured for its report at most this often, seconds.
 _MEASURE_EVERY = 0.4
 
 Array = NDArray[np.float64]
-
-_pool: ThreadPoolExecutor | None = None
-
-
-def pool() -> ThreadPoolExecutor:
-    """The one thread in which nets are built and models iterate."""
-    global _pool
-    if _pool is None:
-        _pool = ThreadPoolExecutor(1, "curvefold")
-    return _pool
-
-
-def stop() -> None:
-    """Ends the thread; the next job starts another."""
-    global _pool
-    if _pool is not None:
-        _pool.shutdown(wait=True, cancel_futures=True)
-    _pool = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +48,7 @@ class Step:
 
 
 class Worker:
-    """A model that iterates, in the thread (``start``) or in the caller's (``advance``), never in both.
+    """A model that iterates, in the thread (``ask``) or in the caller's (``advance``), never in both.
 
     newest: the last step, whoever made it; None before the first
     """
@@ -81,29 +61,36 @@ class Worker:
         self._told: Inputs | None = None
         self._refused: tuple[str, ...] = ()
         self._asked: Inputs | None = None
-        self._job: Future[None] | None = None
-        self._enough = Event()
+        self._fault: BaseException | None = None
+        #: Set while the thread has nothing to do here.
+        self._done = Event()
+        self._done.set()
+        #: Held for an iteration.
+        self._iterating = Lock()
         self._anew = False
         self._iterations = 0
         self._measured_at = 0.0
         self.newest: Step | None = None
 
     @property
+    def wants(self) -> bool:
+        """Whether the thread has something to do here."""
+        return not self._done.is_set()
+
+    @property
     def is_running(self) -> bool:
-        """Whether a job may be running in the thread."""
-        return self._job is not None
+        """Whether the thread may be iterating here."""
+        return self.wants or self._iterating.locked()
 
     def again(self, positions: Array) -> Worker:
         """A worker that begins elsewhere; what takes long to prepare goes with it.
 
-        Waits for nothing: the thread does one job after the other, and when the new worker's begins, this one's
-        is over.
+        Waits for nothing: the thread makes one iteration after the other, and when the new worker's begins, this
+        one's is over.
         """
-        self._enough.set()
-        if self._job is not None and self._job.cancel():
-            self._job = None
+        self._withdraw()
         worker = Worker(self._net, positions)
-        unused = self._job is None and self._model is None
+        unused = not self._iterating.locked() and self._model is None
         worker._earlier = self._earlier if unused else self
         return worker
 
@@ -111,23 +98,21 @@ class Worker:
         """Begins with another way from flat. Before the first iteration."""
         self._anew = True
 
-    def work(self, inputs: Inputs, deadline: float) -> None:
-        """Lets the thread work on the newest inputs, and waits until the clock says ``deadline`` or it rests.
-
-        The thread goes on afterwards, while Blender draws. Raises what went wrong in the thread.
-        """
-        self._asked = inputs
-        if self._job is None:
-            self._enough.clear()
-            self._job = pool().submit(self._turn)
-        job = self._job
-        try:
-            job.result(timeout=max(0.0, deadline - time.perf_counter()))
-        except TimeoutError:
+    def ask(self, inputs: Inputs, first: bool = False) -> None:
+        """Lets the thread work on the newest inputs until it rests; before all others, when it is the first."""
+        step = self.newest
+        if step is not None and step.told == inputs and _is_over(step) and self._asked == inputs:
             return
-        finally:
-            if job.done():
-                self._job = None
+        self._asked = inputs
+        self._done.clear()
+        turns.ask(self, first)
+
+    def wait(self, deadline: float) -> None:
+        """Waits until the clock says ``deadline`` or nothing is left to do. Raises the fault of the thread."""
+        self._done.wait(max(0.0, deadline - time.perf_counter()))
+        fault, self._fault = self._fault, None
+        if fault is not None:
+            raise fault
 
     def advance(self, inputs: Inputs, iterations: int) -> Step:
         """So many iterations, fewer when it comes to rest. Blocking."""
@@ -136,23 +121,35 @@ class Worker:
         return self.newest
 
     def join(self) -> None:
-        """Waits for the running job, and for one of the worker that this one began as."""
-        if self._earlier is not None and self._earlier._job is not None:
-            wait([self._earlier._job])  # what went wrong in it matters no more
-        job, self._job = self._job, None
-        self._enough.set()
-        if job is not None and not job.cancel():
-            job.result()
+        """Waits until the thread does no more here, nor for the worker that this one began as."""
+        for worker in (self._earlier, self):
+            if worker is not None:
+                worker._withdraw()
+                with worker._iterating:
+                    pass
+        self._fault = None
 
-    def _turn(self) -> None:
-        end = time.perf_counter() + _TURN
-        while True:
-            asked = self._asked
-            assert asked is not None
-            self.newest = step = self._step(asked, 1)
-            late = self._enough.is_set() or time.perf_counter() > end
-            if late or (step.rests and self._asked == asked) or step.report.status is Status.NOT_FINITE:
+    def iterate(self) -> None:
+        """In the thread: one iteration."""
+        asked = self._asked
+        assert asked is not None
+        with self._iterating:
+            if not self.wants:
                 return
+            try:
+                self.newest = step = self._step(asked, 1)
+            except Exception as error:
+                self._fault = error
+                self._done.set()
+                return
+        if _is_over(step):
+            self._done.set()
+            if self._asked != asked:
+                self._done.clear()  # told something else meanwhile
+
+    def _withdraw(self) -> None:
+        turns.withdraw(self)
+        self._done.set()
 
     def _prepared(self) -> FoldModel | None:
         """The model; at first that of the earlier worker, moved to where this one begins."""
@@ -200,6 +197,11 @@ class Worker:
             (now - begin) / max(1, report.iterations),
             model.flow_progress,
         )
+
+
+def _is_over(step: Step) -> bool:
+    """Whether nothing comes of going on."""
+    return step.rests or step.report.status is Status.NOT_FINITE
 
 
 def _found(model: FoldModel) -> tuple[Finding, ...]:

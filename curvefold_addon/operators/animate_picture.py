@@ -7,8 +7,9 @@ from bpy.props import EnumProperty
 
 from .. import picture, scene
 from ..bridge import baking, linked
+from ..waiting import Waiting
 from .on_paper import OnPaper
-from .set_up_picture import Waiting, papers_meant
+from .set_up_picture import papers_meant
 
 KINDS = (
     ("TURNTABLE", "Turntable", "Camera and light of the picture go once round the paper"),
@@ -42,11 +43,11 @@ class AnimatePicture(OnPaper, bpy.types.Operator):
             _fold(target, paper)
         elif scene.find_home(target) is None and bpy.ops.curvefold.set_up_picture() != {"FINISHED"}:
             return {"CANCELLED"}
-        with Waiting(context) as progress:
+        with Waiting(context) as waiting:
             if self.kind == "TURNTABLE":
-                picture.turn_round(target, papers, progress)
+                picture.turn_round(target, papers, waiting.of_all)
             else:
-                picture.reframe(target, papers, progress)
+                picture.reframe(target, papers, waiting.of_all)
         return {"FINISHED"}
 
 

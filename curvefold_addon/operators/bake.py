@@ -6,6 +6,7 @@ import bpy
 
 from .. import live
 from ..bridge import baking, by_hand
+from ..waiting import Waiting
 from .on_paper import OnPaper
 
 
@@ -30,10 +31,13 @@ class Bake(OnPaper, bpy.types.Operator):
         live.make_session(paper)  # before anything is changed: a paper that cannot be read stays as it is
         present = scene.frame_current
         shapes = []
-        for frame in range(scene.frame_start, scene.frame_end + 1):
-            # Every frame in its turn: the shape depends on the way.
-            scene.frame_set(frame)
-            shapes.append(baking.shown_positions(mesh))
+        frames = range(scene.frame_start, scene.frame_end + 1)
+        with Waiting(context) as waiting:
+            for done, frame in enumerate(frames):
+                waiting.of_all(done, len(frames))
+                # Every frame in its turn: the shape depends on the way.
+                scene.frame_set(frame)
+                shapes.append(baking.shown_positions(mesh))
         mesh.curvefold.live = False
         baking.store_keys(paper, shapes, scene.frame_start)
         scene.frame_set(present)

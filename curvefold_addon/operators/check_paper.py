@@ -9,6 +9,7 @@ from .. import later_work, live
 from ..bridge import mesh_check
 from ..bridge.state import StateError, is_stored
 from ..drawing_context import in_object_mode
+from ..waiting import busy
 
 
 class CheckPaper(bpy.types.Operator):
@@ -29,7 +30,8 @@ class CheckPaper(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         item = _meant(context)
         try:
-            found = mesh_check.check(item, context.evaluated_depsgraph_get(), _session(item))
+            with busy(context):
+                found = mesh_check.check(item, context.evaluated_depsgraph_get(), _session(item))
         except mesh_check.CheckError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

@@ -11,6 +11,7 @@ from .. import later_work, paper_material, wording
 from ..bridge import drawing, linked, mesh, papers
 from ..drawing_context import select_only
 from ..resolution_property import resolution_property, told
+from ..waiting import Waiting
 from .drawing_files import READING, SUFFIXES, DrawingFiles
 
 
@@ -55,7 +56,8 @@ class FoldDrawing(DrawingFiles, bpy.types.Operator):
         beginning = f"{pattern.name}: " if one_of_many else ""
         try:
             description = solver.FoldDescription(resolution=told(self.resolution), angle=degrees(self.angle))
-            result = solver.fold(pattern, description)
+            with Waiting(context) as waiting:
+                result = solver.fold(pattern, description, waiting.iterations)
         except solver.CurvefoldError as error:
             self.refuse(error if error.where.file else error.in_file(pattern.name), beginning)
             return None

@@ -4,6 +4,7 @@ It must not run all the time: a running modal operator keeps Blender from saving
 """
 
 import gc
+import sys
 import time
 from typing import ClassVar
 
@@ -20,10 +21,19 @@ SLOW = 0.05
 #: Then a tick waits for this part of its budget.
 SLOW_PART = 0.25
 
+#: Seconds after which the solver's thread hands Python on when Blender asks for it. Python's own 5 ms are paid at
+#: every handler and every button that is drawn while papers move.
+HAND_ON = 0.001
+
 #: Seconds in which a timer of a hundredth comes for certain, once Blender looks at events again.
 SWEEP = 0.05
 
+#: Seconds until it is looked again whether a picture is finished.
+AFTER_RENDER = 0.5
+
 _running = False
+#: What Python had before.
+_switch_interval = 0.0
 _timer: bpy.types.Timer | None = None
 #: Whether no dead handler of this operator can be left in the window; the timer that sees to it.
 _swept = False
@@ -40,7 +50,7 @@ class Follow(bpy.types.Operator):
     _ended = 0.0
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        global _running, _timer
+        global _running, _switch_interval, _timer
         if _running:
             return {"CANCELLED"}
         _timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
@@ -48,6 +58,8 @@ class Follow(bpy.types.Operator):
         # A collection of all that Blender and its extensions hold takes up to 0.2 s, and building a net brings
         # one about. While papers move, only what is made meanwhile is looked through.
         gc.freeze()
+        _switch_interval = sys.getswitchinterval()
+        sys.setswitchinterval(HAND_ON)
         _running = True
         return {"RUNNING_MODAL"}
 
@@ -76,6 +88,7 @@ def stop(manager: bpy.types.WindowManager) -> None:
     global _running, _timer
     if _running:
         gc.unfreeze()
+        sys.setswitchinterval(_switch_interval)
     _running = False
     if _timer is not None:
         manager.event_timer_remove(_timer)
@@ -101,6 +114,8 @@ def _begin() -> float | None:
     manager = bpy.context.window_manager
     if not live.is_at_work() or _running or not len(manager.windows):
         return None
+    if bpy.app.is_job_running("RENDER"):
+        return AFTER_RENDER
     # A timer has no window of its own.
     window = manager.windows[0]
     if not _is_swept(manager, window):

@@ -6,6 +6,7 @@ import bpy
 
 from .. import kept_rulings, line_materials, live
 from ..bridge import baking, line_objects
+from ..waiting import busy
 from .on_paper import OnPaper
 
 
@@ -21,7 +22,8 @@ class RulingsAsObject(OnPaper, bpy.types.Operator):
         if baking.is_baked(paper.data):
             return self.refuse("The paper is baked; free its bake to find its rulings")
         session = live.make_session(paper)
-        made = line_objects.add_rulings(paper, session.net, session.positions, line_materials.of_rulings())
+        with busy(context):
+            made = line_objects.add_rulings(paper, session.net, session.positions, line_materials.of_rulings())
         if made is None:
             return self.refuse("The paper is plane, so it has no rulings")
         self.report({"INFO"}, f"Made {made.name}, which moves with the paper and does not bend with it")
@@ -42,7 +44,8 @@ class RulingsAsAttribute(OnPaper, bpy.types.Operator):
             return self.refuse("The paper is baked; free its bake to find its rulings")
         if paper.mode != "OBJECT":
             return self.refuse("Leave Edit Mode before its rulings are written")
-        has_some = kept_rulings.mark(paper.data, live.make_session(paper))
+        with busy(context):
+            has_some = kept_rulings.mark(paper.data, live.make_session(paper))
         plane = "" if has_some else "; it is 0 now, since the paper is plane"
         self.report({"INFO"}, f'{paper.name} has the attribute "ruling"{plane}')
         return {"FINISHED"}

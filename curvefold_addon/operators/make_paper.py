@@ -12,6 +12,7 @@ from ..bridge.nets import choose
 from ..bridge.session import flat_session
 from ..drawing_context import NO_SHEET, meant_sheets, select_only
 from ..resolution_property import resolution_property
+from ..waiting import busy
 
 
 class MakePaper(bpy.types.Operator):
@@ -45,7 +46,8 @@ class MakePaper(bpy.types.Operator):
         made, faults = [], []
         for sheet in sheets:
             try:
-                made.append(self._make(sheet))
+                with busy(context):
+                    made.append(self._make(sheet))
             except solver.CurvefoldError as error:
                 faults.append(str(error))
         for fault in faults:

@@ -7,6 +7,7 @@ from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from .. import later_work, picture, scene
 from ..bridge.papers import is_paper
+from ..waiting import Waiting
 from .on_paper import OnPaper
 
 ENGINES = (
@@ -45,8 +46,10 @@ class SetUpPicture(OnPaper, bpy.types.Operator):
         papers = papers_meant(context, paper)
         for item in papers:
             picture.thicken(item, self.thickness)
-        with Waiting(context) as progress:
-            picture.set_up(context.scene, papers, context.selected_objects, self.engine, self.samples, progress)
+        with Waiting(context) as waiting:
+            picture.set_up(
+                context.scene, papers, context.selected_objects, self.engine, self.samples, waiting.of_all
+            )
         self.report({"INFO"}, "F12 renders the picture; Remove Picture gives the scene back")
         return {"FINISHED"}
 
@@ -70,20 +73,6 @@ class RemovePicture(bpy.types.Operator):
         papers = [item for item in context.scene.objects if is_paper(item)]
         picture.remove(context.scene, papers)
         return {"FINISHED"}
-
-
-class Waiting:
-    """Shows at the pointer how far a film has been gone through."""
-
-    def __init__(self, context: bpy.types.Context) -> None:
-        self._manager = context.window_manager
-
-    def __enter__(self) -> picture.Progress:
-        self._manager.progress_begin(0.0, 1.0)
-        return lambda done, of_all: self._manager.progress_update(done / of_all)
-
-    def __exit__(self, *_: object) -> None:
-        self._manager.progress_end()
 
 
 def papers_meant(context: bpy.types.Context, paper: bpy.types.Object) -> list[bpy.types.Object]:

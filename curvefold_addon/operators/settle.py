@@ -5,6 +5,7 @@ from typing import ClassVar
 import bpy
 
 from .. import live
+from ..waiting import Waiting
 from .on_paper import OnPaper
 
 
@@ -17,7 +18,8 @@ class Settle(OnPaper, bpy.types.Operator):
     folds = True
 
     def act(self, context: bpy.types.Context, paper: bpy.types.Object) -> set[str]:
-        live.settle(paper.data)
+        with Waiting(context) as waiting:
+            live.settle(paper.data, progress=waiting.iterations)
         facts = live.report(paper.data)
         self.report({"WARNING"} if facts.state == "trouble" else {"INFO"}, facts.sentence)
         return {"FINISHED"}

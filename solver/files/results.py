@@ -11,16 +11,22 @@ from scipy.spatial import cKDTree
 from ..arrays import FloatArray
 from ..errors import CurvefoldError
 from ..fold import FoldResult
+from ..optimize.kernel import linear_algebra
 from .atomic import write_whole
 from .fold_format import fold_text
 from .obj import obj_text
-from .ruling_files import ruling_texts
+from .ruling_files import RULING_FILES, ruling_texts
 
 OBJ_NAME, FOLD_NAME, REPORT_NAME = "folded.obj", "folded.fold", "report.json"
 #: FOLD's frame units by millimetres a unit.
 _UNITS = {1.0: "mm", 10.0: "cm", 1000.0: "m", 25.4: "in", 25.4 / 72: "pt", 1e-3: "um", 1e-6: "nm"}
 #: Units that differ by less, relatively, are the same: a drawing's unit is a quotient of its sizes.
 _SAME_UNIT = 1e-9
+
+
+def result_names(with_rulings: bool = False) -> tuple[str, ...]:
+    """The names of the files that ``write_results`` writes."""
+    return (OBJ_NAME, FOLD_NAME, *(RULING_FILES if with_rulings else ()), REPORT_NAME)
 
 
 def write_results(result: FoldResult, folder: str | Path, with_rulings: bool = False) -> None:
@@ -35,7 +41,7 @@ def write_results(result: FoldResult, folder: str | Path, with_rulings: bool = F
     vertices = surface.apply(result.positions)
     faces = surface.faces()
     name = result.pattern.name or "folded"
-    report = result.report()
+    report = result.report() | {"linear_algebra": linear_algebra().phrase}
     texts = {
         OBJ_NAME: obj_text(
             vertices,

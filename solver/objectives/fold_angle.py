@@ -38,29 +38,20 @@ class FoldAngle:
     cosine: FloatArray
     weight: FloatArray
     name: str = "fold angle"
-    least: bool = False
 
     def residual(self, x: FloatArray) -> FloatArray:
         tangents, _ = _tangents(x)
         _, size = _chord(tangents)
-        return bounded(self._missing(size))[0][None]
+        return bounded(0.5 * size - self._asked())[0][None]
 
     def linearize(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         (t1, t2), (l1, l2) = _tangents(x)
         chord, size = _chord((t1, t2))
-        missing = self._missing(size)
-        residual, slope = bounded(missing)
-        if self.least:
-            slope = np.where(missing < 0.0, slope, 0.0)
+        residual, slope = bounded(0.5 * size - self._asked())
         pull = 0.5 * slope * chord / size
         g1 = (pull - (pull * t1).sum(0) * t1) / l1
         g2 = ((pull * t2).sum(0) * t2 - pull) / l2
         return residual[None], np.stack([-g1, g1, -g2, g2], axis=1)[None]
-
-    def _missing(self, size: FloatArray) -> FloatArray:
-        """(n,) half chords of these lengths beyond the asked ones; below zero they are short of them."""
-        beyond = 0.5 * size - self._asked()
-        return np.minimum(beyond, 0.0) if self.least else beyond
 
     def _asked(self) -> FloatArray:
         """sin alpha sin(theta/2), rounded like the chord so that a flat crease satisfies an angle of zero."""

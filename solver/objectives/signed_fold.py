@@ -21,6 +21,8 @@ from .fold_angle import driven_points
 
 #: Part of its flat length below which tau x (t1 + t2) is rounded: at a fold that is nearly shut.
 _SHUT = 0.02
+#: Least flat length of tau x (t1 + t2), net units²: a point without neighbours along its crease has no tau at all.
+_NO_DIRECTION = 1e-3
 #: Points nearer than this along a crease give no direction, net units.
 _APART = 0.2
 
@@ -116,7 +118,8 @@ def signed_fold(
     twist = np.abs(tau[:, 0] * step[:, 1] - tau[:, 1] * step[:, 0]) / np.hypot(*step.T)
     n = len(points)
     return SignedFold(
-        stencil, np.ascontiguousarray(along.T), np.sqrt(1 - crease.cos2[points]), 2 * twist,
+        stencil, np.ascontiguousarray(along.T), np.sqrt(1 - crease.cos2[points]),
+        np.maximum(2 * twist, _NO_DIRECTION),
         np.sin(np.radians(degrees) / 2), np.broadcast_to(np.asarray(side, dtype=np.int64), n).copy(),
         np.broadcast_to(np.asarray(weight, dtype=np.float64), n).copy(), name,
     )  # fmt: skip

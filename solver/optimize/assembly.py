@@ -229,10 +229,11 @@ class Problem:
             self._kept = (shift, damping), values
         return self._kept[1]
 
-    def factorize(self, model: Linearization) -> None:
+    def factorize(self, model: Linearization, rhs: FloatArray | None = None) -> None:
         """Factorise a model's Hessian, with more on the diagonal when rounding has made it indefinite.
 
-        Raises NotPositiveDefiniteError when even that does not help.
+        rhs (3V,): what ``system.solution`` will be asked for. Raises NotPositiveDefiniteError when even that does
+        not help.
         """
         for extra in (0.0, *_RESCUES):
             values = model.values
@@ -240,7 +241,7 @@ class Problem:
                 values = values.copy()
                 values[self._diagonal] += extra
             try:
-                self.system.factorize(values)
+                self.system.factorize(values, rhs)
                 return
             except NotPositiveDefiniteError:
                 if extra == _RESCUES[-1]:

@@ -10,10 +10,12 @@ from scipy.sparse.linalg import splu
 
 from ..arrays import FloatArray, IntArray
 from ..errors import NotPositiveDefiniteError
+from .kernel import linear_algebra
+from .multifrontal.compiled import CompiledFactorization
 from .multifrontal.lapack import LapackUnavailableError, Routines
 from .multifrontal.numeric import Factorization
 from .multifrontal.ordering import dissect, vertex_graph
-from .multifrontal.symbolic import analyse, entry_addresses
+from .multifrontal.symbolic import Symbolic, analyse, entry_addresses
 
 
 class _Backend(Protocol):
@@ -30,6 +32,8 @@ class LinearSystem:
     the order of elimination and may be any finite numbers. ``threads``: 1 or 2, more count as 2; the
     results are the same to the last bit. Raises ValueError for a pattern that is not such a triangle.
 
+    The compiled kernel is used where it is to be had, otherwise numpy and scipy; results differ by rounding.
+
     One system must not be used from several threads at once.
     """
 
@@ -42,51 +46,85 @@ class LinearSystem:
         self.factorizations: int = 0
         self.solves: int = 0
         self._factorized = False
+        self._pending: FloatArray | None = None
         self.flops: float
         """Multiplications and additions of one factorisation (0 where unknown)."""
         self.factor_nonzeros: int
         """Numbers kept for one factor, zeros among them included."""
         self.backend: str
-        """``"multifrontal"``, or ``"splu"`` where scipy's LAPACK pointers cannot be had."""
+        """``"kernel"``; without it ``"multifrontal"``, or ``"splu"`` where scipy has no LAPACK pointers."""
         self._implementation: _Backend
+        library = linear_algebra().library
+        if library is not None:
+            symbolic = _analysed(rows, cols, plane)
+            compiled = CompiledFactorization(library, symbolic, rows, cols, threads=threads)
+            self._implementation = compiled
+            self.backend, self.flops = "kernel", symbolic.flops
+            self.factor_nonzeros = compiled.factor_nonzeros
+            return
         try:
             routines = Routines()
         except LapackUnavailableError:
             self._implementation = _SuperLU(rows, cols, self.size)
             self.backend, self.flops, self.factor_nonzeros = "splu", 0.0, 0
             return
-        graph = vertex_graph(rows // 3, cols // 3, len(plane))
-        symbolic = analyse(graph, dissect(graph, plane))
+        symbolic = _analysed(rows, cols, plane)
         addresses = entry_addresses(symbolic, rows, cols)
         self._implementation = Factorization(symbolic, addresses, routines, threads=threads)
         self.backend, self.flops = "multifrontal", symbolic.flops
         self.factor_nonzeros = int(symbolic.panel_starts[-1])
 
-    def factorize(self, values: FloatArray) -> None:
+    def factorize(self, values: FloatArray, rhs: FloatArray | None = None) -> None:
         """Factorises the matrix with ``values`` (nnz,), aligned with ``rows`` and ``cols``.
 
+        With ``rhs`` (N,) half of its solution may be done on the way; ``solution`` gives it.
         Raises NotPositiveDefiniteError (values that are not finite included) and ValueError for a wrong
         shape. After an error there is no factor.
         """
         values = np.ascontiguousarray(values, np.float64)
         if values.shape != (self.entries,):
             raise ValueError(f"values has shape {values.shape}, expected ({self.entries},)")
-        self._factorized = False
-        self._implementation.factorize(values)
-        self._factorized = True
+        if rhs is not None:
+            rhs = self._checked_rhs(rhs)
+        self._factorized, self._pending = False, None
+        if isinstance(self._implementation, CompiledFactorization):
+            self._implementation.factorize(values, rhs)
+        else:
+            self._implementation.factorize(values)
+        self._factorized, self._pending = True, rhs
         self.factorizations += 1
         if isinstance(self._implementation, _SuperLU):
             self.factor_nonzeros = self._implementation.factor_nonzeros
 
     def solve(self, rhs: FloatArray) -> FloatArray:
         """The solution (N,) of the latest factorised matrix for ``rhs`` (N,). Raises ValueError."""
+        rhs = self._checked_rhs(rhs)
+        if not self._factorized:
+            raise ValueError("there is no factor to solve with")
+        self._pending = None
+        self.solves += 1
+        return self._implementation.solve(rhs)
+
+    def solution(self) -> FloatArray:
+        """The solution (N,) for the ``rhs`` given to ``factorize``, before any other solve. Raises ValueError."""
+        rhs, self._pending = self._pending, None
+        if rhs is None:
+            raise ValueError("the latest factorisation was given no right-hand side, or it has been solved for")
+        self.solves += 1
+        if isinstance(self._implementation, CompiledFactorization):
+            return self._implementation.solution()
+        return self._implementation.solve(rhs)
+
+    def _checked_rhs(self, rhs: FloatArray) -> FloatArray:
         rhs = np.asarray(rhs, np.float64)
         if rhs.shape != (self.size,):
             raise ValueError(f"rhs has shape {rhs.shape}, expected ({self.size},)")
-        if not self._factorized:
-            raise ValueError("there is no factor to solve with")
-        self.solves += 1
-        return self._implementation.solve(rhs)
+        return rhs
+
+
+def _analysed(rows: IntArray, cols: IntArray, plane: FloatArray) -> Symbolic:
+    graph = vertex_graph(rows // 3, cols // 3, len(plane))
+    return analyse(graph, dissect(graph, plane))
 
 
 def _check_pattern(rows: IntArray, cols: IntArray, plane: FloatArray) -> None:

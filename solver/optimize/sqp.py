@@ -97,9 +97,9 @@ def sqp_step(problem: Problem, state: SqpState, eps: float) -> tuple[SqpState, S
         model = problem.linearize(x, 1.0 / eps, _SHIFT, state.damping)
     gradient = model.gradient + problem.transposed(model.jacobians, model.evaluation.constraint / eps)
     clock.append(time.perf_counter())
-    problem.factorize(model)
+    problem.factorize(model, -gradient)
     clock.append(time.perf_counter())
-    step = problem.system.solve(-gradient)
+    step = problem.system.solution()
     if not np.isfinite(step).all():
         raise NotPositiveDefiniteError("the linear system gave a step that is not finite")
     clock.append(time.perf_counter())
@@ -151,8 +151,8 @@ def tangent_step(problem: Problem, x: FloatArray, eps: float) -> FloatArray:
     """
     model = problem.linearize(x, 1.0 / eps, _SHIFT, _TANGENT_DAMPING)
     gradient = model.gradient + problem.transposed(model.jacobians, model.evaluation.constraint / eps)
-    problem.factorize(model)
-    step = problem.system.solve(-gradient).reshape(-1, 3)
+    problem.factorize(model, -gradient)
+    step = problem.system.solution().reshape(-1, 3)
     if not np.isfinite(step).all():
         raise NotPositiveDefiniteError("the linear system gave a step that is not finite")
     x = x + step

@@ -161,9 +161,9 @@ def test_a_folded_drawing_has_what_the_solver_chose(extension, drawing, live, mo
     told = []
     fold = solver.fold
 
-    def noted(pattern, description):
+    def noted(pattern, description, *rest):
         told.append(description)
-        return fold(pattern, description)
+        return fold(pattern, description, *rest)
 
     monkeypatch.setattr(solver, "fold", noted)
     bpy.ops.curvefold.fold_drawing(filepath=str(drawing), angle=0.3)

@@ -131,12 +131,6 @@ def test_a_crash_is_a_failure(extension, main, drawings, tmp_path, monkeypatch):
     assert not stamps(out)
 
 
-def test_out_is_a_file(main, drawings, tmp_path, capsys):
-    (tmp_path / "out").write_text("in the way")
-    assert main(["batch", str(drawings), "--out", str(tmp_path / "out")]) == 2
-    assert "cannot be made" in capsys.readouterr().err
-
-
 def test_a_program_is_started_again_by_its_own_path(extension, monkeypatch):
     batch = extension("curvefold_addon.batch")
 

@@ -99,9 +99,67 @@ def test_picture_that_cannot_be_written(main, drawing, tmp_path, capsys, option)
     suffix = ".png" if option == "--render" else ".blend"
     path = tmp_path / "file" / f"a{suffix}"
     assert main(["fold", str(drawing), "--out", str(tmp_path / "o"), option, str(path), *QUICK]) == 2
-    assert "cannot be written" in complaint(capsys)
+    assert "file is not a folder" in complaint(capsys)
     assert (tmp_path / "file").read_text() == "in the way"
     assert not (tmp_path / "o").exists(), "that was clear before folding"
+
+
+@pytest.fixture
+def nothing_folds(extension, monkeypatch):
+    """Fails when anything is folded, here or in a process of a batch."""
+
+    def refuse(*_: object, **__: object) -> None:
+        raise AssertionError("that was clear before folding")
+
+    monkeypatch.setattr(extension("solver.command_line"), "fold", refuse)
+    monkeypatch.setattr(extension("curvefold_addon.batch"), "_worker_command", refuse)
+
+
+@pytest.mark.parametrize("verb", ["fold", "batch"])
+@pytest.mark.parametrize("inside", [".", "folder/folder"])
+def test_out_that_is_no_folder(main, nothing_folds, drawing, tmp_path, capsys, verb, inside):
+    (tmp_path / "file").write_text("in the way")
+    assert main([verb, str(drawing), "--out", str(tmp_path / "file" / inside), *QUICK]) == 2
+    said = complaint(capsys)
+    assert "nothing can be written there" in said
+    assert f"{tmp_path / 'file'} is not a folder" in said
+
+
+@pytest.mark.parametrize(("verb", "name"), [("fold", "report.json"), ("batch", "summary.csv")])
+def test_a_folder_where_a_result_would_be(main, nothing_folds, drawing, tmp_path, capsys, verb, name):
+    (tmp_path / "out" / name).mkdir(parents=True)
+    assert main([verb, str(drawing), "--out", str(tmp_path / "out"), *QUICK]) == 2
+    assert f"{name}: it cannot be written: it is a folder" in complaint(capsys)
+
+
+@pytest.mark.parametrize("verb", ["fold", "batch"])
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        ("--angle", "nan", "angle: the fold angle must lie between 0 and 180 degrees"),
+        ("--angle", "inf", "angle: the fold angle must lie between 0 and 180 degrees"),
+        ("--angle", "-1", "angle: the fold angle must lie between 0 and 180 degrees"),
+        ("--angle", "180.5", "angle: the fold angle must lie between 0 and 180 degrees"),
+        ("--angle", "wide", "argument --angle: invalid float value: 'wide'"),
+        ("--resolution", "2", "resolution: must be a whole number"),
+        ("--vertices", "1", "max_vertices: must be a whole number"),
+        ("--scale", "nan", "scale: must be a number"),
+        ("--handles", "none.json", "none.json: cannot be read"),
+        ("--description", "none.json", "none.json: cannot be read"),
+    ],
+)
+def test_a_value_that_makes_no_sense_is_told_once(
+    main, nothing_folds, drawing, tmp_path, capsys, verb, option, value, words
+):
+    folder = tmp_path / "drawings"
+    folder.mkdir()
+    for name in "ab":
+        (folder / f"{name}.svg").write_text(drawing.read_text())
+    source = folder / "a.svg" if verb == "fold" else folder
+    assert main([verb, str(source), "--out", str(tmp_path / "o"), option, value]) == 2
+    said = capsys.readouterr()
+    assert (said.out + said.err).count(words) == 1
+    assert not (tmp_path / "o").exists()
 
 
 def test_an_older_picture_stays_when_rendering_fails(extension, main, drawing, tmp_path, capsys, monkeypatch):

@@ -166,10 +166,15 @@ def test_the_first_beginning_waits_for_an_event_that_sweeps_out_dead_handlers(fo
     manager, begun = Manager(), []
     context = SimpleNamespace(window_manager=manager, temp_override=lambda window: nullcontext())
     operators = SimpleNamespace(curvefold=SimpleNamespace(follow=begun.append))
-    monkeypatch.setattr(follow, "bpy", SimpleNamespace(context=context, ops=operators))
+    renders = [True]
+    app = SimpleNamespace(is_job_running=lambda kind: kind == "RENDER" and renders[0])
+    monkeypatch.setattr(follow, "bpy", SimpleNamespace(context=context, ops=operators, app=app))
     monkeypatch.setattr(live, "is_at_work", lambda: True)
     for name, value in (("_running", False), ("_swept", False), ("_broom", None)):
         monkeypatch.setattr(follow, name, value)
+    assert follow._begin() == follow.AFTER_RENDER, "a picture is made first"
+    assert (manager.timers, begun) == ([], [])
+    renders[0] = False
     assert follow._begin() == follow.SWEEP, "comes again"
     assert (len(manager.timers), begun) == (1, [])
     assert follow._begin() is None

@@ -837,7 +837,7 @@ def test_handlers_never_raise(extension, live, monkeypatch, capsys, name):
     def broken(*arguments):
         raise ZeroDivisionError(name)
 
-    for function in ("notice", "frame_changed", "park", "forget"):
+    for function in ("notice", "animated_papers", "park", "forget"):
         monkeypatch.setattr(live, function, broken)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     for _ in range(2):

@@ -225,6 +225,52 @@ def animated() -> str:
     return _in_view(bits.animated).name
 
 
+#: Whole frames that were rendered: [number, digest of the paper as it is kept, whether the interface was locked].
+_filmed: list[list] = []
+
+
+def film() -> None:
+    """An animated paper, and a small film of it with motion blur to be rendered."""
+    paper = _in_view(bits.animated)
+    scene = bpy.context.scene
+    scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    scene.camera.location.z = 1.0
+    scene.collection.objects.link(scene.camera)
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples = 1
+    scene.cycles.use_denoising = False
+    scene.render.use_motion_blur = True
+    scene.render.resolution_x = scene.render.resolution_y = 32
+    scene.render.filepath = str(FOLDER / "film" / "frame")
+    _filmed.clear()
+
+    @persistent
+    def note(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+        if depsgraph.mode == "RENDER" and not scene.frame_subframe:
+            mesh = bpy.data.objects[name].data
+            _filmed.append([scene.frame_current, bits.digest(mesh), scene.render.use_lock_interface])
+
+    name = paper.name
+    bpy.app.handlers.frame_change_post.append(note)
+
+
+def filmed() -> dict:
+    """The whole frames so far, whether more come, and whether the interface would be locked."""
+    return {
+        "frames": _filmed,
+        "rendering": bpy.app.is_job_running("RENDER"),
+        "locks": bpy.context.scene.render.use_lock_interface,
+    }
+
+
+def still() -> None:
+    """The paper of the film is animated no more."""
+    for thing in bpy.context.scene.objects:
+        thing.animation_data_clear()
+        if thing.data is not None:
+            thing.data.animation_data_clear()
+
+
 def save_automatically(minutes: int) -> None:
     paths = bpy.context.preferences.filepaths
     paths.use_auto_save_temporary_files = True
@@ -319,7 +365,7 @@ def _count(*_: object) -> None:
 
 _COMMANDS = (
     *(awake, regions, on_screen, facts, said, lettering, prepare, save_automatically, record, recorded),
-    *(waited_for, at_once, folding, animated, bits.watch_frames, bits.seen_frames),
+    *(film, filmed, still, waited_for, at_once, folding, animated, bits.watch_frames, bits.seen_frames),
 )
 
 

@@ -27,6 +27,7 @@ def main() -> int:
         # In processes of its own, which have to find the installed extension again.
         "batch": cli.main(["batch", str(drawing), "--out", str(out / "batch"), "--resolution", "12"]),
         "libraries": {name: importlib.import_module(name).__file__ for name in LIBRARIES},
+        "linear algebra": importlib.import_module(f"{PACKAGE}.solver.optimize.kernel").linear_algebra().phrase,
     }
     # What Blender thinks of the way the extension uses Python's modules; {} when all is well.
     addon_utils._is_first_reset()

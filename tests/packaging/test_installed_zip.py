@@ -17,9 +17,11 @@ BUNDLED = ("scipy", "shapely", "svgelements")
 
 #: Python's name of the machine, and Blender's.
 PLATFORMS = {
+    "linux-aarch64": "linux_arm64",
     "linux-x86_64": "linux_x64",
     "macosx-arm64": "macos_arm64",
     "macosx-x86_64": "macos_x64",
+    "win-arm64": "windows_arm64",
     "win-amd64": "windows_x64",
 }
 
@@ -61,6 +63,7 @@ def test_contents(built: Path) -> None:
     assert not [name for name in wheels if "numpy" in name]
     for library in BUNDLED[:2]:
         assert len([name for name in wheels if f"/{library}-" in name]) == 2, "one for each Python"
+    assert len([name for name in wheels if "/curvefold_kernel-" in name]) <= 1, "one for all Pythons, or none"
     assert not [name for name in names if "__pycache__" in name]
 
 
@@ -88,6 +91,13 @@ def test_install_enable_fold_and_remove(built: Path, tmp_path: Path) -> None:
     assert "Traceback" not in ran.stdout + ran.stderr
     found = json.loads((out / "found.json").read_text())
     assert found["warnings"] == {}
+    with zipfile.ZipFile(built) as archive:
+        bundled = any("/curvefold_kernel-" in name for name in archive.namelist())
+    without = "numpy and scipy; the compiled kernel is not installed"
+    if os.environ.get("CURVEFOLD_KERNEL") == "0":
+        without = "numpy and scipy; the compiled kernel is switched off by CURVEFOLD_KERNEL=0"
+        bundled = False
+    assert found["linear algebra"].startswith("compiled kernel, " if bundled else without)
     for name in BUNDLED:
         assert Path(found["libraries"][name]).is_relative_to(user)
     assert found["fold"] == 0

@@ -9,6 +9,12 @@ from types import ModuleType
 
 import pytest
 
+from solver.optimize.kernel import linear_algebra
+from solver.optimize.multifrontal.library import Library
+
+#: Why a machine may do without the kernel; any other reason is a fault.
+WITHOUT_KERNEL = ("is not installed", "is switched off", "this processor lacks")
+
 
 def _helper(name: str) -> ModuleType:
     full = f"curvefold_test_{name}"
@@ -37,3 +43,13 @@ def drawings() -> ModuleType:
 def on_the_sheet() -> ModuleType:
     """Points of a sheet in space, independent of how its net is numbered."""
     return _helper("on_the_sheet")
+
+
+@pytest.fixture
+def kernel_library() -> Library:
+    """The compiled kernel. Without one the test is skipped; with one that cannot be used it fails."""
+    found = linear_algebra()
+    if found.library is None:
+        leave = pytest.skip if any(reason in found.phrase for reason in WITHOUT_KERNEL) else pytest.fail
+        leave(found.phrase)
+    return found.library

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import io
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +14,11 @@ import pytest
 
 from solver import Crease, CreasePattern, PatternError, ReadOptions, command_line
 from solver.command_line import main
+from solver.files.results import result_names
+from solver.files.ruling_files import RULING_FILES
 from solver.pattern import reading
 
+ROOT = Path(__file__).resolve().parents[2]
 SQUARE = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], dtype=float)
 ARC = np.array([(k / 16, 0.4 + k / 16 * (1 - k / 16)) for k in range(17)])
 QUICK = ("--resolution", "8", "--angle", "20")
@@ -158,3 +164,63 @@ def test_what_was_read_is_said_before_the_fold_and_once(monkeypatch: pytest.Monk
         "note: a side contradicts itself",
         "a.svg: it cannot be folded",
     ]
+
+
+# --- before the fold -------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def nothing_folds(told: list[ReadOptions], monkeypatch: pytest.MonkeyPatch) -> None:
+    def fold(*_: object) -> None:
+        raise AssertionError("that was clear before folding")
+
+    monkeypatch.setattr(command_line, "fold", fold)
+
+
+@pytest.mark.parametrize("name", [*result_names(), *RULING_FILES])
+def test_an_output_that_cannot_be_written_is_found_before_the_fold(
+    nothing_folds: None, tmp_path: Path, name: str
+) -> None:
+    (tmp_path / "out" / name).mkdir(parents=True)
+    code, said = run("a.svg", "--out", tmp_path / "out", "--rulings")
+    assert code == 2
+    assert said == f"{tmp_path / 'out' / name}: it cannot be written: it is a folder\n"
+    (tmp_path / "file").touch()
+    code, said = run("a.svg", "--out", tmp_path / "file" / "out")
+    assert code == 2
+    assert f"{tmp_path / 'file'} is not a folder" in said
+
+
+@pytest.mark.parametrize("angle", ["nan", "inf", "-inf", "-1", "181"])
+def test_an_angle_out_of_range_is_one_sentence(nothing_folds: None, tmp_path: Path, angle: str) -> None:
+    code, said = run("a.svg", "--out", tmp_path / "out", f"--angle={angle}")
+    assert (code, said) == (2, "angle: the fold angle must lie between 0 and 180 degrees\n")
+    assert not (tmp_path / "out").exists()
+
+
+# --- consoles, and Ctrl-C --------------------------------------------------------------------------------
+
+
+def test_ctrl_c_is_a_word_and_an_exit_code(
+    told: list[ReadOptions], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def fold(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(command_line, "fold", fold)
+    code, said = run("a.svg", "--out", tmp_path / "out")
+    assert (code, said.splitlines()[-1]) == (130, "interrupted")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "ascii", "utf-8"])
+def test_a_console_that_lacks_words_shows_them_escaped(tmp_path: Path, encoding: str) -> None:
+    name = "鶴 ≤.svg"
+    environment = os.environ | {"PYTHONIOENCODING": encoding}
+    for arguments in (["fold", "--help"], ["fold", str(tmp_path / name), "--out", str(tmp_path)]):
+        command = [sys.executable, "-m", "solver", *arguments]
+        done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, timeout=300)
+        said = done.stdout + done.stderr
+        assert b"Traceback" not in said
+        assert (done.returncode, b"usage: " in said) in {(0, True), (2, False)}
+    assert name.encode(encoding, "backslashreplace") in said

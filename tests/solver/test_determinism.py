@@ -1,6 +1,7 @@
 """The same drawing, told the same, gives the same bits: again, in another process, with other threads.
 
-And all but the same shape where numbers are rounded in another way, as in other versions of numpy.
+And all but the same shape where numbers are rounded in another way, as in other versions of numpy, or without the
+compiled kernel.
 """
 
 from __future__ import annotations
@@ -15,7 +16,9 @@ import numpy as np
 import pytest
 
 import solver
+from benchmarks.linear_system import computing
 from solver.description import read_handles
+from solver.optimize.kernel import SWITCH
 from solver.optimize.sqp import at_rest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -28,9 +31,9 @@ print(hashlib.sha256(result.positions.tobytes()).hexdigest())
 """
 
 
-def bits(drawing: Path, threads: int, hash_seed: int) -> str:
+def bits(drawing: Path, threads: int, hash_seed: int, switch: str) -> str:
     """Of the shape, folded in a process of its own."""
-    environment = {"OPENBLAS_NUM_THREADS": str(threads), "PYTHONHASHSEED": str(hash_seed)}
+    environment = {"OPENBLAS_NUM_THREADS": str(threads), "PYTHONHASHSEED": str(hash_seed), SWITCH: switch}
     done = subprocess.run(
         [sys.executable, "-c", FOLD, str(drawing)],
         cwd=ROOT,
@@ -45,9 +48,26 @@ def bits(drawing: Path, threads: int, hash_seed: int) -> str:
 
 
 @pytest.mark.parametrize("name", ["hairpin", "mixed"])
-def test_processes_threads_and_hashes_do_not_matter(name: str) -> None:
+@pytest.mark.parametrize(
+    "switch", [pytest.param("1", id="kernel, if there"), pytest.param("0", id="numpy and scipy")]
+)
+def test_processes_threads_and_hashes_do_not_matter(name: str, switch: str) -> None:
     drawing = ROOT / "sample_patterns" / f"{name}.svg"
-    assert bits(drawing, threads=1, hash_seed=1) == bits(drawing, threads=2, hash_seed=2)
+    assert bits(drawing, 1, 1, switch) == bits(drawing, 2, 2, switch)
+
+
+@pytest.mark.usefixtures("kernel_library")
+@pytest.mark.parametrize("name", ["mirrored_arcs", "mixed", "circle_in_square"])
+def test_without_the_kernel_the_shape_is_the_same(name: str) -> None:
+    """To a millionth of its size."""
+    pattern = solver.read_pattern(ROOT / "sample_patterns" / f"{name}.svg")
+    shapes = []
+    for with_kernel in (True, False):
+        with computing(with_kernel=with_kernel):
+            shapes.append(solver.fold(pattern, solver.FoldDescription(resolution=24, angle=50.0)).positions)
+    side = np.ptp(shapes[0], axis=0).max()
+    assert np.abs(shapes[1] - shapes[0]).max() < 1e-6 * side
+    assert not np.array_equal(*shapes), "or this test says nothing"
 
 
 @pytest.mark.parametrize(

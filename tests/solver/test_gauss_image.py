@@ -147,3 +147,24 @@ def test_what_is_no_shape_is_refused(exact: ModuleType) -> None:
     net = solver.build_net(exact.sine(1.5).pattern(), 8)
     with pytest.raises(ValueError, match="positions"):
         gauss_image(net, np.zeros((3, 3)))
+
+
+def test_the_area_of_the_image_tells_ripples_from_bent_paper(exact: ModuleType, drawings: ModuleType) -> None:
+    """Bent paper covers none, up to the grid's error; the cap of a ball covers what the cap does."""
+    state = cone(exact)
+    areas = []
+    for resolution in (16, 32):
+        net = solver.build_net(state.pattern(), resolution)  # type: ignore[attr-defined]
+        areas.append(solver.gauss_area(net, state.positions(net)))  # type: ignore[attr-defined]
+    assert areas[1] < 0.6 * areas[0] < 0.1
+    net = solver.build_net(drawings.square_with(), 32)
+    assert solver.gauss_area(net, flat_sheet(net)) == 0.0
+    x, y = (net.rest - 0.5).T
+    ball = np.column_stack([x, y, np.sqrt(1.0 - x**2 - y**2)])
+    inner = 31.0 / 32.0  # the cells around vertices that have four quads
+    sides = np.linspace(-inner / 2, inner / 2, 200)
+    u, v = np.meshgrid(sides, sides)
+    cap = np.mean((1.0 - u**2 - v**2) ** -0.5) * inner**2
+    assert solver.gauss_area(net, ball) == pytest.approx(cap, rel=0.02)
+    rippled = np.column_stack([x, y, 0.01 * np.sin(40 * x) * np.sin(40 * y)])
+    assert solver.gauss_area(net, rippled) > 1.0

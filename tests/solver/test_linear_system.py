@@ -11,8 +11,9 @@ import pytest
 import solver.optimize.linear_system as linear_system
 from benchmarks.linear_system import diamond_pattern, dominant_values, time_splu
 from solver.errors import NotPositiveDefiniteError
+from solver.optimize.kernel import LinearAlgebra, linear_algebra
 from solver.optimize.linear_system import LinearSystem
-from solver.optimize.multifrontal import numeric
+from solver.optimize.multifrontal import compiled, numeric
 from solver.optimize.multifrontal.lapack import BlasThreads, LapackUnavailableError, Routines
 from solver.optimize.multifrontal.ordering import dissect, vertex_graph
 from solver.optimize.multifrontal.symbolic import analyse
@@ -123,10 +124,25 @@ def dense(rows: np.ndarray, cols: np.ndarray, values: np.ndarray, size: int) -> 
     return matrix
 
 
+@pytest.fixture(autouse=True)
+def _without_kernel(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(linear_system, "linear_algebra", lambda: LinearAlgebra(None, "numpy and scipy"))
+
+
+@pytest.fixture(params=["multifrontal", "kernel"])
+def backend(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """The test runs once with numpy and scipy and once with the compiled kernel."""
+    if request.param == "kernel":
+        request.getfixturevalue("kernel_library")
+        monkeypatch.setattr(linear_system, "linear_algebra", linear_algebra)
+    return str(request.param)
+
+
 @pytest.fixture
 def eager_threads(monkeypatch: pytest.MonkeyPatch) -> None:
     """The second thread is used for systems of any size."""
-    monkeypatch.setattr(numeric, "MIN_LANE_FLOPS", 0.0)
+    for module in (numeric, compiled):
+        monkeypatch.setattr(module, "MIN_LANE_FLOPS", 0.0)
 
 
 @pytest.fixture
@@ -138,7 +154,7 @@ def no_pointers(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("name", PATTERNS)
-def test_solves_like_a_dense_solver(name: str) -> None:
+def test_solves_like_a_dense_solver(name: str, backend: str) -> None:
     rows, cols, plane = PATTERNS[name]()
     size = 3 * len(plane)
     shuffle = np.random.default_rng(1).permutation(len(rows))
@@ -146,7 +162,7 @@ def test_solves_like_a_dense_solver(name: str) -> None:
     values = dominant_values(rows, cols, size)
     rhs = np.random.default_rng(2).standard_normal(size)
     system = LinearSystem(rows, cols, plane)
-    assert system.backend == "multifrontal"
+    assert system.backend == backend
     system.factorize(values)
     matrix = dense(rows, cols, values, size)
     solution = system.solve(rhs)
@@ -154,6 +170,7 @@ def test_solves_like_a_dense_solver(name: str) -> None:
     np.testing.assert_allclose(solution, np.linalg.solve(matrix, rhs), atol=1e-10)
 
 
+@pytest.mark.usefixtures("backend")
 def test_a_stiff_system_is_solved_to_its_condition() -> None:
     """Bending with constraints weighted 1e6 times as much, which is what the solver makes of a fold."""
     pairs, plane = grid(12, 12)
@@ -174,7 +191,7 @@ def test_a_stiff_system_is_solved_to_its_condition() -> None:
 
 
 @pytest.mark.parametrize("name", ["grid", "stitched", "disconnected", "long range", "single vertex"])
-@pytest.mark.usefixtures("eager_threads")
+@pytest.mark.usefixtures("eager_threads", "backend")
 def test_two_threads_give_the_same_bits_as_one(name: str) -> None:
     rows, cols, plane = PATTERNS[name]()
     size = 3 * len(plane)
@@ -185,6 +202,9 @@ def test_two_threads_give_the_same_bits_as_one(name: str) -> None:
         one.factorize(values)
         two.factorize(values)
         assert one.solve(rhs).tobytes() == two.solve(rhs).tobytes()
+        one.factorize(values, rhs)
+        two.factorize(values, rhs)
+        assert one.solution().tobytes() == two.solution().tobytes()
 
 
 class _Fenced:
@@ -208,16 +228,18 @@ class _Fenced:
 
 @pytest.mark.parametrize("name", PATTERNS)
 @pytest.mark.usefixtures("eager_threads")
-def test_nothing_is_written_beside_the_factor(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_is_written_beside_the_factor(name: str, backend: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Routines are told bare addresses: what they wrote elsewhere would end Blender, minutes later."""
     rows, cols, plane = PATTERNS[name]()
     size = 3 * len(plane)
     fenced = _Fenced()
-    monkeypatch.setattr(numeric, "np", fenced)
+    monkeypatch.setattr({"multifrontal": numeric, "kernel": compiled}[backend], "np", fenced)
     system = LinearSystem(rows, cols, plane)
-    system.factorize(dominant_values(rows, cols, size))
+    system.factorize(dominant_values(rows, cols, size), np.ones(size))
+    system.solution()
     system.solve(np.ones(size))
-    assert len(fenced.fences) >= 2 * 5  # panels, updates, two vectors, and whether pivots were positive
+    # Panels, updates, two vectors, and whether pivots were positive, or the kernel's scratch.
+    assert len(fenced.fences) >= 2 * 5
     assert all((fence == _Fenced.FENCE).all() for fence in fenced.fences)
 
 
@@ -234,7 +256,7 @@ def test_the_addition_of_openblas_gives_the_same_bits_as_numpy(monkeypatch: pyte
     assert solutions[0].tobytes() == solutions[1].tobytes()
 
 
-@pytest.mark.usefixtures("eager_threads")
+@pytest.mark.usefixtures("eager_threads", "backend")
 def test_the_second_thread_ends_with_the_system() -> None:
     before = set(threading.enumerate())
     rows, cols, plane = PATTERNS["grid"]()
@@ -249,12 +271,17 @@ def test_the_second_thread_ends_with_the_system() -> None:
         assert not worker.is_alive()
 
 
-@pytest.mark.parametrize("backend", ["multifrontal", "splu"])
-def test_an_indefinite_matrix_is_refused_and_a_good_one_solved_after(
-    backend: str, request: pytest.FixtureRequest
-) -> None:
-    if backend == "splu":
-        request.getfixturevalue("no_pointers")
+@pytest.mark.usefixtures("backend")
+def test_an_indefinite_matrix_is_refused_and_a_good_one_solved_after() -> None:
+    _refuses_an_indefinite_matrix()
+
+
+@pytest.mark.usefixtures("no_pointers")
+def test_splu_refuses_an_indefinite_matrix_too() -> None:
+    _refuses_an_indefinite_matrix()
+
+
+def _refuses_an_indefinite_matrix() -> None:
     rows, cols, plane = PATTERNS["stitched"]()
     size = 3 * len(plane)
     system = LinearSystem(rows, cols, plane)
@@ -265,23 +292,28 @@ def test_an_indefinite_matrix_is_refused_and_a_good_one_solved_after(
             bad = good.copy()
             bad[place] = bad_value
             with pytest.raises(NotPositiveDefiniteError):
-                system.factorize(bad)
+                system.factorize(bad, np.ones(size))
             with pytest.raises(ValueError, match="no factor"):
                 system.solve(np.ones(size))
+            with pytest.raises(ValueError, match="no right-hand side"):
+                system.solution()
     with pytest.raises(NotPositiveDefiniteError):
         system.factorize(-good)
     system.factorize(good)
     assert np.abs(dense(rows, cols, good, size) @ system.solve(np.ones(size)) - 1).max() < 1e-10
 
 
-def test_nothing_is_left_of_a_failed_factorisation() -> None:
+def test_nothing_is_left_of_a_failed_factorisation(backend: str) -> None:
     rows, cols, plane = PATTERNS["stitched"]()
     values = dominant_values(rows, cols, 3 * len(plane))
     clean, spoilt = LinearSystem(rows, cols, plane), LinearSystem(rows, cols, plane)
     implementation = spoilt._implementation
-    assert isinstance(implementation, numeric.Factorization)
-    for array in (implementation._updates, implementation._panels, implementation._vector):
-        array.fill(np.nan)
+    kept = {
+        "multifrontal": ("_updates", "_panels", "_vector"),
+        "kernel": ("_updates", "_panels", "_vector", "_carried", "_scratch"),
+    }[backend]
+    for array in kept:
+        getattr(implementation, array).fill(np.nan)
     solutions = []
     for system in (clean, spoilt):
         system.factorize(values)
@@ -289,6 +321,7 @@ def test_nothing_is_left_of_a_failed_factorisation() -> None:
     assert solutions[0] == solutions[1]
 
 
+@pytest.mark.usefixtures("backend")
 def test_an_off_diagonal_nan_is_refused() -> None:
     rows, cols, plane = PATTERNS["grid"]()
     values = dominant_values(rows, cols, 3 * len(plane))
@@ -297,6 +330,7 @@ def test_an_off_diagonal_nan_is_refused() -> None:
         LinearSystem(rows, cols, plane).factorize(values)
 
 
+@pytest.mark.usefixtures("backend")
 def test_the_pattern_is_frozen_and_the_values_are_not() -> None:
     rows, cols, plane = PATTERNS["stitched"]()
     size = 3 * len(plane)
@@ -311,6 +345,37 @@ def test_the_pattern_is_frozen_and_the_values_are_not() -> None:
             assert np.abs(residual).max() < 1e-10
 
 
+@pytest.mark.parametrize("name", ["stitched", "strip", "disconnected", "dense row"])
+@pytest.mark.usefixtures("backend")
+def test_half_a_solution_on_the_way_gives_the_same_bits_as_a_whole_one_after(name: str) -> None:
+    rows, cols, plane = PATTERNS[name]()
+    size = 3 * len(plane)
+    system = LinearSystem(rows, cols, plane)
+    values, rhs = dominant_values(rows, cols, size), np.random.default_rng(2).standard_normal(size)
+    system.factorize(values, rhs)
+    fused = system.solution()
+    system.factorize(values)
+    assert fused.tobytes() == system.solve(rhs).tobytes()
+
+
+@pytest.mark.usefixtures("backend")
+def test_a_solution_is_given_once_and_not_after_another() -> None:
+    rows, cols, plane = PATTERNS["grid"]()
+    size = 3 * len(plane)
+    system = LinearSystem(rows, cols, plane)
+    values = dominant_values(rows, cols, size)
+    system.factorize(values, np.ones(size))
+    system.solution()
+    with pytest.raises(ValueError, match="no right-hand side"):
+        system.solution()
+    system.factorize(values, np.ones(size))
+    system.solve(np.zeros(size))
+    with pytest.raises(ValueError, match="no right-hand side"):
+        system.solution()
+    assert system.solves == 2
+
+
+@pytest.mark.usefixtures("backend")
 def test_counters() -> None:
     rows, cols, plane = PATTERNS["grid"]()
     size = 3 * len(plane)
@@ -385,6 +450,7 @@ def test_a_pattern_that_is_no_lower_triangle_is_refused(
         LinearSystem(np.array(rows), np.array(cols), plane)
 
 
+@pytest.mark.usefixtures("backend")
 def test_wrong_shapes_are_refused() -> None:
     system = LinearSystem(np.arange(3), np.arange(3), np.zeros((1, 2)))
     with pytest.raises(ValueError, match="values"):
@@ -392,6 +458,8 @@ def test_wrong_shapes_are_refused() -> None:
     system.factorize(np.ones(3))
     with pytest.raises(ValueError, match="rhs"):
         system.solve(np.ones(4))
+    with pytest.raises(ValueError, match="rhs"):
+        system.factorize(np.ones(3), np.ones(4))
 
 
 def test_blas_threads_are_given_back() -> None:

@@ -19,7 +19,7 @@ import numpy as np
 from ...arrays import FloatArray, IntArray
 from ...errors import NotPositiveDefiniteError
 from .lapack import Routines, argument
-from .symbolic import Front, Symbolic, front_flops
+from .symbolic import Front, Symbolic, border_runs, front_flops, update_places
 
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
 
@@ -67,7 +67,9 @@ class Factorization:
         self._routines = routines
         self._scalars = _Scalars()
         self._panels = np.zeros(int(symbolic.panel_starts[-1]))
-        self._updates, self._update_starts = _update_storage(symbolic)
+        sizes = np.array([front.border_size**2 for front in symbolic.fronts])
+        self._update_starts, total = update_places(symbolic, sizes)
+        self._updates = np.zeros(total)
         size = 3 * len(symbolic.position)
         self._vector = np.zeros(size)
         self._border = np.zeros(max(f.border_size for f in symbolic.fronts))
@@ -190,15 +192,12 @@ class Factorization:
         front = self._symbolic.fronts[i]
         early: list[Call] = []
         late: list[Call] = []
-        own = front.rows
         panel = self._panel(i)
         update = self._update(i)
         pivots = front.stop - front.start
         for child in front.children:
             source = self._update(child)
-            rows = np.searchsorted(own, self._symbolic.fronts[child].border)
-            breaks = np.flatnonzero((np.diff(rows) != 1) | (rows[1:] == pivots)) + 1
-            runs = [(int(r[0]), k, len(r)) for r, k in zip(np.split(rows, breaks), [0, *breaks], strict=True)]
+            runs = border_runs(self._symbolic.fronts[child], front)
             for a, (to_col, from_col, cols) in enumerate(runs):
                 for to_row, from_row, count in _merged(runs[a:], pivots if to_col >= pivots else -1):
                     block = source[_dofs(from_col, cols), _dofs(from_row, count)]
@@ -299,41 +298,6 @@ def _merged(runs: list[tuple[int, int, int]], pivots: int) -> list[tuple[int, in
         else:
             merged.append((to_row, from_row, count))
     return merged
-
-
-def _update_storage(symbolic: Symbolic) -> tuple[FloatArray, IntArray]:
-    """One array for all updates and where each begins.
-
-    An update lives from its front to its parent's, in postorder: two stacks a lane, for even and odd depth,
-    so that a front's update is never written over those of its children. The top's few fronts, which may be
-    worked on at once, each have a place of their own.
-    """
-    fronts = symbolic.fronts
-    depth = np.zeros(len(fronts), np.int64)
-    for i in range(len(fronts) - 1, -1, -1):
-        for child in fronts[i].children:
-            depth[child] = depth[i] + 1
-    first, second = symbolic.lane_ends
-    tops: dict[tuple[int, int], int] = {}
-    sizes: dict[tuple[int, int], int] = {}
-    place: list[tuple[tuple[int, int], int]] = []
-    for i, front in enumerate(fronts):
-        lane = int(i >= first) + int(i >= second)
-        key = lane, int(depth[i] & 1)
-        start = tops.get(key, 0)
-        place.append((key, start))
-        tops[key] = start + front.border_size**2
-        sizes[key] = max(sizes.get(key, 0), tops[key])
-        released = [place[c] for c in front.children if place[c][0][0] == lane != 2]
-        if released:
-            tops[released[0][0]] = min(offset for _, offset in released)
-    bases: dict[tuple[int, int], int] = {}
-    total = 0
-    for key, size in sizes.items():
-        bases[key] = total
-        total += size
-    starts = np.array([bases[key] + offset for key, offset in place], np.int64)
-    return np.zeros(total), starts
 
 
 def _run(calls: list[Call]) -> None:

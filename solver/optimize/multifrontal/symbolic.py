@@ -244,3 +244,48 @@ def _postorder(drafts: list[_Draft], root: int) -> list[int]:
         found.append(i)
         stack.extend(drafts[i].children)
     return found[::-1]
+
+
+def border_runs(child: Front, parent: Front) -> list[tuple[int, int, int]]:
+    """Where a child's border lies in its parent: (parent's row, place in the border, how many), in vertices.
+
+    Rows that follow each other make one run; none goes on from the parent's pivots into its border.
+    """
+    rows = np.searchsorted(parent.rows, child.border)
+    pivots = parent.stop - parent.start
+    breaks = np.flatnonzero((np.diff(rows) != 1) | (rows[1:] == pivots)) + 1
+    return [(int(run[0]), int(at), len(run)) for run, at in zip(np.split(rows, breaks), [0, *breaks], strict=True)]
+
+
+def update_places(symbolic: Symbolic, sizes: IntArray) -> tuple[IntArray, int]:
+    """Where each front's update of ``sizes`` (F,) numbers begins in one array, and the size of that.
+
+    An update lives from its front to its parent's, in postorder: two stacks a lane, for even and odd depth,
+    so that a front's update is never written over those of its children. The top's few fronts, which may be
+    worked on at once, each have a place of their own.
+    """
+    fronts = symbolic.fronts
+    depth = np.zeros(len(fronts), np.int64)
+    for i in range(len(fronts) - 1, -1, -1):
+        for child in fronts[i].children:
+            depth[child] = depth[i] + 1
+    first, second = symbolic.lane_ends
+    tops: dict[tuple[int, int], int] = {}
+    ends: dict[tuple[int, int], int] = {}
+    place: list[tuple[tuple[int, int], int]] = []
+    for i, front in enumerate(fronts):
+        lane = int(i >= first) + int(i >= second)
+        key = lane, int(depth[i] & 1)
+        start = tops.get(key, 0)
+        place.append((key, start))
+        tops[key] = start + int(sizes[i])
+        ends[key] = max(ends.get(key, 0), tops[key])
+        released = [place[c] for c in front.children if place[c][0][0] == lane != 2]
+        if released:
+            tops[released[0][0]] = min(offset for _, offset in released)
+    bases: dict[tuple[int, int], int] = {}
+    total = 0
+    for key, size in ends.items():
+        bases[key] = total
+        total += size
+    return np.array([bases[key] + offset for key, offset in place], np.int64), total
