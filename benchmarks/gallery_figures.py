@@ -175,7 +175,10 @@ def _with_and_without() -> tuple[Figure, ...]:
             result.append(
                 Figure(
                     "3", f"{name}_{'with' if condition else 'without'}", words, drawing,
-                    _told(handles=_pinch(inwards[name], 0.12), weights=Weights(fold_condition=float(condition)), least_fold=0.0),
+                    _told(
+                        handles=_pinch(inwards[name], 0.12),
+                        weights=Weights(fold_condition=float(condition)), least_fold=0.0,
+                    ),
                     fast=name == "arc", bars=condition,
                 )
             )  # fmt: skip

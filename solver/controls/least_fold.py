@@ -1,9 +1,9 @@
 """A soft torque that folds what nothing else folds, and never flattens a deeper fold.
 
-Flat is a resting place of a crease even where the paper around it bends. So while handles alone bend the paper,
-every crease point that is shallower than the least fold is pulled towards it, to the side to which most of its
-crease is folded, so softly that handles stay where they are. And whatever pulls: points that come to rest flat
-are pulled to a faint fold, harder and harder.
+Flat is a resting place of a crease even where the paper around it bends. So when handles alone have bent the paper
+and it has come to rest, every crease point that is shallower than the least fold is pulled towards it, to the side
+to which most of its crease is folded, so softly that handles stay where they are. And whatever pulls: points that
+come to rest flat are pulled to a faint fold, harder and harder.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class LeastFold(Pull):
         self._term = signed_fold(net, self._points, np.zeros(len(self._points)), 0, 0.0, "least fold")
         self._size = float(np.ptp(net.flat, axis=0).max())
         self._released = np.zeros(len(self._points), dtype=bool)
-        self._side: IntArray = np.zeros(len(self._points), dtype=np.int64)
+        self._side: IntArray = np.ones(len(self._points), dtype=np.int64)
         self._degrees, self._part, self._iterations = 0.0, 0.0, 0
         self.unfolding = False
         self.start_anew()
@@ -59,6 +59,7 @@ class LeastFold(Pull):
 
     def start_anew(self) -> None:
         """The sheet is flat once more."""
+        self._awake = False
         self._times = np.zeros(len(self._points), dtype=np.int64)
         self._left = np.zeros(len(self._points), dtype=bool)  # flat at the last look
 
@@ -75,6 +76,14 @@ class LeastFold(Pull):
 
     def begin(self, x: FloatArray) -> None:
         self._look(x)
+
+    def aim(self, x: FloatArray) -> bool:
+        """Handles have folded the sheet as far as they do by themselves: from here on it is folded further."""
+        if self._awake or not self._shallow(x):
+            return False
+        self._awake = True
+        self._look(x)
+        return True
 
     def keep_up(self, x: FloatArray) -> bool:
         """Before every step: follow the side that each crease takes, and fold what a drag leaves flat on its way.
@@ -98,10 +107,11 @@ class LeastFold(Pull):
     def terms(self) -> list[Term]:
         if self._weight == 0 or len(self._points) == 0:
             return []
-        degrees = np.maximum(self._degrees * self._part, _FAINT * self._times)
+        least = self._degrees * self._part if self._awake else 0.0
+        degrees = np.maximum(least, _FAINT * self._times)
         idle = self._released | (degrees == 0) | self.unfolding
         half = self._side * np.sin(np.radians(0.5 * degrees))
-        weight = np.where(idle | (self._side == 0), 0.0, self._weight * _HARDER**self._times)
+        weight = np.where(idle, 0.0, self._weight * _HARDER**self._times)
         return [replace(self._term, half=half, side=self._side, weight=weight)]
 
     def settle(self, x: FloatArray) -> bool:
@@ -122,6 +132,15 @@ class LeastFold(Pull):
     def share(self, x: FloatArray) -> bool:
         return self.settle(x)
 
+    def _shallow(self, x: FloatArray) -> bool:
+        """Whether some point is folded less than the least fold."""
+        least = np.sin(np.radians(0.5 * self._degrees * self._part))
+        return bool((np.abs(self._half_angles(x)) < least).any())
+
+    def _half_angles(self, x: FloatArray) -> FloatArray:
+        """(n,) sines of half the signed fold angles."""
+        return self._term.half_angles(gather(np.ascontiguousarray(x.T), self._term.stencil))
+
     def _flat(self, x: FloatArray) -> BoolArray:
         """(n,) which points are not folded though the paper is bent; none while it unfolds."""
         if self.unfolding or self._weight == 0 or off_plane(x) <= FLAT:
@@ -131,9 +150,8 @@ class LeastFold(Pull):
 
     def _look(self, x: FloatArray) -> bool:
         """Take the side of each chain of points; whether any is new."""
-        half = self._term.half_angles(gather(np.ascontiguousarray(x.T), self._term.stencil))
-        total = np.bincount(self._chain, half, minlength=len(self._net.chain_crease))
-        side = np.sign(total).astype(np.int64)[self._chain]
+        total = np.bincount(self._chain, self._half_angles(x), minlength=len(self._net.chain_crease))
+        side = np.where(total < 0.0, -1, 1)[self._chain]
         changed = not np.array_equal(side, self._side)
         self._side = side
         return changed

@@ -27,7 +27,7 @@ def weights(pull: LeastFold) -> np.ndarray:
     return np.asarray(term.weight)
 
 
-def test_nothing_is_asked_of_points_until_handles_bend_the_paper_or_they_rest_flat(net: solver.PiecewiseDog) -> None:
+def test_nothing_is_asked_until_handles_bend_the_paper_or_points_rest_flat(net: solver.PiecewiseDog) -> None:
     pull = LeastFold(net, 0.1)
     pull.set(40.0)
     pull.begin(bent(net, 2.0))

@@ -30,6 +30,7 @@ from solver.objectives.fold_angle import driven_points, fold_angle
 from solver.objectives.fold_condition import fold_condition
 from solver.objectives.handles import AxisHandles, handles
 from solver.objectives.isometry import isometry
+from solver.objectives.signed_fold import signed_fold, signed_points
 from solver.optimize.assembly import Problem
 from solver.optimize.term import LinearTerm, ResidualTerm, gather
 
@@ -63,6 +64,7 @@ NAMES = (
     "handles on axes",
     "fold condition",
     "fold angle",
+    "least fold",
     "star angles",
     "border angles",
 )
@@ -87,8 +89,14 @@ def terms_by_module(net: solver.PiecewiseDog) -> dict[str, list[Term]]:
         ],
         "solver.objectives.fold_condition": [fold_condition(net, 0.7)],
         "solver.objectives.fold_angle": [fold_angle(net, angles, 400.0)],
+        "solver.objectives.signed_fold": [_least_fold(net)],
         "solver.constraints.orthogonal_geodesic": [StarAngles(net.stars), LinkAngles(net.links)],
     }
+
+
+def _least_fold(net: solver.PiecewiseDog) -> Term:
+    points = signed_points(net)
+    return signed_fold(net, points, np.full(len(points), 30.0), 1, 2.0, "least fold")
 
 
 def control_terms(net: solver.PiecewiseDog, kind: str) -> list[Term]:
