@@ -78,7 +78,7 @@ class Weights:
     continuity: float = 1e4
     handles: float = 5.0
     drive: float = 3.0
-    least_fold: float = 0.1
+    least_fold: float = 0.5
     fold_angle: float = 100.0
     fold_condition: float = 1.0
     sides: float = 100.0

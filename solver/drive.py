@@ -50,6 +50,7 @@ class AngleDrive(Pull):
         self._crease = net.crease_points.crease[self._points]
         self._amount = np.ones(len(net.crease_labels))
         self._released = np.zeros(len(self._crease), dtype=bool)
+        self._held = np.zeros(len(self._crease), dtype=bool)
         self.angle: float | None = None
         self._shift = 0.0  # how much more is asked for, degrees
         self._start()
@@ -75,6 +76,10 @@ class AngleDrive(Pull):
         self._released = points
         return changed and self.angle is not None
 
+    def leave_out(self, creases: frozenset[int]) -> None:
+        """Creases that others keep from folding do not count in the median, unless there are no others."""
+        self._held = np.isin(self._crease, list(creases))
+
     def terms(self) -> list[Term]:
         if self.angle is None:
             return []
@@ -91,6 +96,7 @@ class AngleDrive(Pull):
             return False
         short = self.angle - self._median(x)
         if abs(short) <= _AIMED:
+            self._short = np.inf
             return False
         self._aims += 1
         shift = float(np.clip(self._shift + short, -_MOST_SHIFT, _MOST_SHIFT))
@@ -126,16 +132,36 @@ class AngleDrive(Pull):
         median = self._median(x)
         if median >= REACHED_PART * self.angle:
             return []
-        return [
-            Finding(Lack.DEPTH, f"the creases came to {median:.0f}° in the median of the {self.angle:.0f}° asked")
-        ]
+        mine, part = self._parts(x)
+        crease = self._crease[mine]
+        creases = np.unique(crease)
+        each = [float(np.median(part[crease == k])) for k in creases]
+        least = int(creases[np.argmin(each)])
+        name = self._net.crease_labels[least]
+        if len(creases) == 1:
+            sentence = f"{name} came to {median * self._amount[least]:.0f}° of the {self._asked(least):.0f}° asked"
+        else:
+            sentence = f"the creases came to {median:.0f}° of the {self.angle:.0f}° asked in the median"
+            sentence += f", the least of them, {name}, to {min(each) * self._amount[least]:.0f}°"
+        return [Finding(Lack.DEPTH, sentence, least)]
 
-    def _median(self, x: FloatArray) -> float:
-        """Median angle, degrees, of the points that are driven, each in parts of its crease's amount."""
+    def _asked(self, crease: int) -> float:
+        """What one crease is asked for, degrees."""
+        return min((self.angle or 0.0) * float(self._amount[crease]), 180.0)
+
+    def _parts(self, x: FloatArray) -> tuple[BoolArray, FloatArray]:
+        """Which points (n,) count, and their angles, degrees, in parts of the amount of their creases."""
         amount = self._amount[self._crease]
         angle = measure(self._net, self._net.frame.to_drawing(x)).fold_angle[self._points]
         mine = ~self._released & (amount > 0) & np.isfinite(angle)
-        return float(np.median(angle[mine] / amount[mine])) if mine.any() else float(self.angle or 0.0)
+        if (mine & ~self._held).any():
+            mine &= ~self._held
+        return mine, angle[mine] / amount[mine]
+
+    def _median(self, x: FloatArray) -> float:
+        """Median of the parts, degrees; what is asked where nothing is driven."""
+        _, part = self._parts(x)
+        return float(np.median(part)) if len(part) else float(self.angle or 0.0)
 
 
 def edge_stretch(net: PiecewiseDog, x: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from .arrays import FloatArray, IntArray, frozen_array
 from .constraints.orthogonal_geodesic import LinkAngles, StarAngles
-from .controls.agreement import check_agreement, with_reasons
+from .controls.agreement import check_agreement, held_creases, with_reasons
 from .controls.condition_pull import ConditionPull
 from .controls.control import Control, ControlPull
 from .controls.curve import Curve, CurvePull
@@ -186,6 +186,7 @@ class FoldModel:
             mine = tuple(entry for entry in told if entry[1].kind == name)
             self._at_work[name] = mine, self._at_work[name][1]
         self._controls = tuple(controls)
+        self._drive.leave_out(held_creases(self._controls, self.net))
         self._wake()
 
     @property
@@ -224,7 +225,8 @@ class FoldModel:
         self._wake()
 
     def fold_anew(self, opening: float = OPENING_ANGLES[0]) -> None:
-        """Start from the flat sheet once more and go another way: all creases fold before anything pulls.
+        """Start from the flat sheet once more and go another way: all creases fold before anything pulls. Until the
+        handles are told anew no more than faint folds are asked for.
 
         opening: to which angle, degrees. Which of several folds a paper takes is decided by its way, and the way of
         the handles may end stuck.
@@ -373,7 +375,7 @@ class FoldModel:
 
     def _off_flat(self) -> float:
         """By how much the flat sheet misses the handles, net units, where nothing but handles bends the paper."""
-        if not len(self._handles) or self._drive.angle is not None or self._controlled():
+        if not len(self._handles) or self._opening or self._drive.angle is not None or self._controlled():
             return 0.0
         flat = np.column_stack([self.net.flat, np.zeros(len(self.net.flat))])
         lying = laid_flat(self.net.flat, flat, *self._handles.anchors())
@@ -463,6 +465,7 @@ class FoldModel:
             pull.set((), x)
             pull.set(controls, x)
         self._wake()
+        self._least.give_way()
 
     def _lies_down(self) -> bool:
         """Bring a sheet back to flat that its handles ask to be nothing else; whether that was done.

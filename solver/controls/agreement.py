@@ -53,6 +53,17 @@ def with_reasons(
     return tuple(_with_reason(finding, controls, handles, net) for finding in findings)
 
 
+def held_creases(controls: Sequence[Control], net: PiecewiseDog) -> frozenset[int]:
+    """Creases that kept patches and curves of their own may keep from folding as deep as the others."""
+    held: set[int] = set()
+    for control in controls:
+        if isinstance(control, Curve):
+            held.add(crease_index(net.crease_labels, control.crease))
+        elif isinstance(control, Keep):
+            held |= _creases_around(net, control)
+    return frozenset(held)
+
+
 def _with_reason(finding: Finding, controls: Sequence[Control], handles: bool, net: PiecewiseDog) -> Finding:
     if finding.held is None:
         return finding

@@ -45,21 +45,15 @@ def ring_and_arcs(drawings: ModuleType) -> solver.CreasePattern:
 # --- as deep as the sheet allows -----------------------------------------------------------------------------
 
 
-def test_one_crease_of_several_that_stays_far_below_the_drive_is_named(drawings: ModuleType) -> None:
-    """The median over all creases is as deep as asked."""
-    result = solver.fold(ring_and_arcs(drawings), solver.FoldDescription(resolution=16, angle=110.0))
-    angles = medians(result.measurement)
-    assert angles[0] < 60
-    assert min(angles[1:]) > 100
-    assert np.nanmedian(result.measurement.fold_angle) > 100
-    assert result.status is solver.Outcome.SHALLOW
-    assert result.detail == (
-        f"crease 1 came to {angles[0]:.0f}° of the 110° asked: the sheet allows no more without stretching"
-    )
-    assert [finding.lack for finding in result.findings] == [Lack.DEPTH]
+def test_one_crease_that_stays_below_the_others_is_no_fault(drawings: ModuleType) -> None:
+    """The angle is that of the median; a ring finds its own."""
+    result = solver.fold(ring_and_arcs(drawings), solver.FoldDescription(resolution=16, angle=90.0))
+    assert medians(result.measurement)[0] < 70
+    assert np.nanmedian(result.measurement.fold_angle) == pytest.approx(90.0, abs=2.0)
+    assert result.status.ok, result.detail
 
 
-def test_several_creases_that_stay_below_are_counted_in_one_sentence(drawings: ModuleType) -> None:
+def test_a_median_that_stays_below_is_said_and_its_least_crease_named(drawings: ModuleType) -> None:
     t = np.linspace(0, 2 * np.pi, 48, endpoint=False)
     rings = [
         solver.Crease(points=np.column_stack([x + 0.14 * np.cos(t), 0.5 + 0.14 * np.sin(t)]), closed=True)
@@ -67,8 +61,14 @@ def test_several_creases_that_stay_below_are_counted_in_one_sentence(drawings: M
     ]
     result = solver.fold(drawings.square_with(*rings), solver.FoldDescription(resolution=14, angle=120.0))
     assert result.status is solver.Outcome.SHALLOW
-    assert result.detail.startswith("crease 1 came to ")
-    assert "of the 120° asked, and 1 more does not reach theirs either: the sheet allows" in result.detail
+    angles = medians(result.measurement)
+    least = int(np.argmin(angles))
+    assert result.detail == (
+        f"the creases came to {np.nanmedian(result.measurement.fold_angle):.0f}° of the 120° asked in the median, "
+        f"the least of them, crease {least + 1}, to {angles[least]:.0f}°: "
+        "the sheet allows no more without stretching"
+    )
+    assert [finding.lack for finding in result.findings] == [Lack.DEPTH]
 
 
 def test_what_an_amount_asks_for_is_measured_by_the_amount(drawings: ModuleType) -> None:
@@ -250,7 +250,7 @@ def test_a_border_is_not_glued_to_itself(
 @pytest.mark.parametrize(
     ("weights", "controls", "angle"),
     [
-        (solver.Weights(fold_angle=0.0), (), 50.0),
+        (solver.Weights(drive=0.0), (), 50.0),
         (solver.Weights(fold_angle=0.0), (Angle(50.0, crease=1),), None),
         (solver.Weights(curves=0.0), (Curve(1, curvature_times=1.3),), None),
         (solver.Weights(pairs=0.0), (Pair((0.0, 0.0), (1.0, 0.0), distance=0.8),), None),

@@ -27,17 +27,34 @@ def weights(pull: LeastFold) -> np.ndarray:
     return np.asarray(term.weight)
 
 
-def test_nothing_is_asked_until_handles_bend_the_paper_or_points_rest_flat(net: solver.PiecewiseDog) -> None:
-    pull = LeastFold(net, 0.1)
+def half_chord(pull: LeastFold) -> float:
+    """What is asked of all points: sine of half the fold angle."""
+    (term,) = pull.terms()
+    return float(np.max(term.half))
+
+
+def test_nothing_is_asked_until_handles_have_bent_the_paper(net: solver.PiecewiseDog) -> None:
+    pull, x = LeastFold(net, 0.1), bent(net, 2.0)
     pull.set(40.0)
-    pull.begin(bent(net, 2.0))
-    assert not weights(pull).any()
-    pull.bend(0.001 * np.ptp(net.flat, axis=0).max())
-    few = weights(pull)
-    assert few.any()
-    pull.bend(0.0)
-    assert pull.settle(bent(net, 2.0))
+    assert not pull.aim(x), "no handle bends the paper"
+    pull.bend(float(np.ptp(net.flat, axis=0).max()))
+    assert not weights(pull).any(), "they have not come to rest"
+    assert pull.aim(x)
     assert weights(pull).any()
+    assert not pull.aim(x)
+    pull.give_way()
+    assert not weights(pull).any()
+
+
+def test_the_least_fold_falls_with_what_the_flat_sheet_misses(net: solver.PiecewiseDog) -> None:
+    pull, size = LeastFold(net, 0.1), float(np.ptp(net.flat, axis=0).max())
+    pull.set(40.0)
+    pull.bend(size)
+    pull.aim(bent(net, 2.0))
+    whole = half_chord(pull)
+    pull.bend(0.01 * size)
+    assert 0.0 < half_chord(pull) < 0.5 * whole
+    assert whole == pytest.approx(np.sin(np.radians(20.0)))
 
 
 def test_points_that_rest_flat_are_pulled_harder_and_harder_but_not_for_ever(net: solver.PiecewiseDog) -> None:
@@ -75,15 +92,25 @@ def dragged(pattern: solver.CreasePattern, part: float, least: float) -> solver.
 
 
 def test_creases_that_handles_leave_flat_fold_visibly(drawings: ModuleType) -> None:
-    """Two corners lifted behind a crease: by themselves they hardly fold it."""
-    pattern = drawings.off_centre()
-    alone, helped = (dragged(pattern, 0.12, least) for least in (0.0, 40.0))
-    low = [np.nanquantile(m.fold_angle, 0.1) for m in (alone, helped)]
-    assert low[1] > 1.5 * low[0]
+    """Two corners lifted beside a crossing: by themselves they hardly fold one of its creases."""
+    pattern = drawings.crossing()
+    alone, helped = (dragged(pattern, 0.04, least) for least in (0.0, 40.0))
+    low, helped_low = (np.nanmedian(m.fold_angle) for m in (alone, helped))
+    assert low < 6.0
+    assert helped_low > 20.0
+
+
+@pytest.mark.parametrize("part", [0.02, 0.06, 0.12])
+def test_deeper_folds_are_never_flattened(drawings: ModuleType, part: float) -> None:
+    """The way of the handles is the same with and without it."""
+    pattern = drawings.one_arc()
+    alone, helped = (np.nanmedian(dragged(pattern, part, least).fold_angle) for least in (0.0, 20.0))
+    assert alone > 25.0
+    assert helped == pytest.approx(alone, abs=1.0)
 
 
 def test_a_shorter_drag_folds_less(drawings: ModuleType) -> None:
-    medians = [np.nanmedian(dragged(drawings.one_arc(), part, 40.0).fold_angle) for part in (0.01, 0.03, 0.1)]
+    medians = [np.nanmedian(dragged(drawings.crossing(), part, 40.0).fold_angle) for part in (0.002, 0.01, 0.04)]
     assert medians == sorted(medians)
     assert medians[0] < 0.5 * medians[-1]
 
