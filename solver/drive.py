@@ -36,7 +36,7 @@ _MOST_SHIFT = 30.0
 #: and in all at most so many times: hairpin and circle_in_square need 3.
 _GAIN, _HARDER, _HARDEST = 0.2, 3.0, 30.0
 #: Easing multiplies the pull by a power of budget / stretch, but by no less and no more than this.
-_EASE_POWER, _EASE_LEAST, _EASE_MOST = 1.5, 0.25, 0.7
+_EASE_POWER, _EASE_LEAST, _EASE_MOST = 1.5, 0.25, 0.9
 #: The pull is eased at most so often.
 _EASINGS = 6
 
@@ -97,6 +97,8 @@ class AngleDrive(Pull):
         short = self.angle - self._median(x)
         if abs(short) <= _AIMED:
             self._short = np.inf
+            return False
+        if short > 0 and self._eased:
             return False
         self._aims += 1
         shift = float(np.clip(self._shift + short, -_MOST_SHIFT, _MOST_SHIFT))

@@ -81,7 +81,7 @@ def test_what_an_amount_asks_for_is_measured_by_the_amount(drawings: ModuleType)
     assert medians(result.measurement) == pytest.approx([40.0], rel=0.03)
 
 
-@pytest.mark.parametrize(("sample", "resolution"), [("annulus", 24), ("hairpin", 24), ("loop", 32)])
+@pytest.mark.parametrize(("sample", "resolution"), [("annulus", 32), ("hairpin", 24), ("loop", 32)])
 def test_a_sample_that_comes_to_most_of_its_angle_is_folded(sample: str, resolution: int) -> None:
     pattern = solver.read_pattern(ROOT / "sample_patterns" / f"{sample}.svg")
     result = solver.fold(pattern, solver.FoldDescription(resolution=resolution, angle=60.0))

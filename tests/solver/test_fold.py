@@ -154,10 +154,10 @@ def test_folded_anew_a_paper_opens_along_its_creases_and_is_then_told_the_same(d
 
 
 def test_what_is_stuck_on_the_way_of_its_handles_gets_there_in_another(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Corpus seed 568 with twice its quads: a loop, lifted at two points of its border at once."""
-    drawing = make_drawing(568)
-    drag = make_drag(568, drawing, solver.build_net(drawing.pattern, drawing.resolution))
-    told = solver.FoldDescription(2 * drawing.resolution, angle=None, handles=tuple(drag.handles(1.0)))
+    """Corpus seed 44: a star whose handles are moved within the plane of the sheet, at once."""
+    drawing = make_drawing(44)
+    drag = make_drag(44, drawing, solver.build_net(drawing.pattern, drawing.resolution))
+    told = solver.FoldDescription(drawing.resolution, angle=None, handles=tuple(drag.handles(1.0)))
     result = solver.fold(drawing.pattern, told)
     assert result.status is solver.Outcome.FOLDED
     monkeypatch.setattr(fold_module, "_WORTH_ANOTHER_WAY", ())
