@@ -28,6 +28,8 @@ HALF_ANGLE = 4.0
 REACHED_PART = 0.9
 #: A median that is this part of what was asked is not worth a harder pull, which ripples.
 _NEAR_PART = 0.94
+#: A median below this counts as this much, degrees, where something is divided by it.
+_LEAST_MEDIAN = 1.0
 #: The median is what was asked within this, degrees; looked at so often at most.
 _AIMED, _MOST_AIMS = 0.5, 10
 #: The drive asks for at most this much more than it is set to, degrees.
@@ -126,7 +128,8 @@ class AngleDrive(Pull):
     def shortfall(self, x: FloatArray) -> float:
         if not self.angle or self._weight == 0:
             return 0.0
-        return max(1.0 - self._median(x) / self.angle, 0.0)
+        # In parts of what it comes to: a part of what is lacking is much where the creases have come to little.
+        return max(self.angle / max(self._median(x), _LEAST_MEDIAN) - 1.0, 0.0)
 
     def findings(self, x: FloatArray) -> list[Finding]:
         if not self.angle or self._weight == 0:
