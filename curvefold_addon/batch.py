@@ -258,6 +258,10 @@ class _Crew:
             for partial in task.folder.glob(PARTIAL_FILES):
                 partial.unlink(missing_ok=True)
         seconds = time.monotonic() - start
+        if self._stopped and code not in FOLDED_CODES:
+            # At most its log tells how Python was interrupted while it started.
+            log.unlink()
+            return Outcome(task, code, "interrupted", seconds)
         if code in FOLDED_CODES and not all((task.folder / name).is_file() for name in task.results):
             code = CRASHED  # Python itself ends with 1 on an error that nobody expected
         if code not in FOLDED_CODES:
