@@ -138,13 +138,13 @@ def _standing(
     troubles = _troubles(found)
     if troubles:
         return "trouble", troubles[0]
+    depth = [finding.sentence for finding in found.said.findings if finding.lack is Lack.DEPTH]
     unfolded = not_folded(creases)
     if unfolded:
-        return "trouble", unfolded
+        return "trouble", "; ".join([unfolded, *depth])
     mean = float(found.measurement.stretch.mean())
     if mean > MAX_MEAN_STRETCH:
         return "trouble", f"the paper is stretched by {mean:.1%} in the mean, more than paper can be"
-    depth = [finding.sentence for finding in found.said.findings if finding.lack is Lack.DEPTH]
     if depth:
         return "settled", depth[0]
     # What was found is not kept in a file: a paper that has not moved since it was opened shows how deep it is.

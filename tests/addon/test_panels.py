@@ -345,7 +345,7 @@ def test_a_handle_is_listed_with_all_that_can_be_set(panels, paper):
     settings = paper.data.curvefold
     settings.handles.add().name = "Corner"
     notes = drawn(panels.HandlesPanel)
-    assert notes["properties"] == ["handles", "hook", "axes", "axes", "axes", "strength"]
+    assert notes["properties"] == ["handles", "least_fold", "hook", "axes", "axes", "axes", "strength"]
     assert {"curvefold.remove_handle", "curvefold.pin", "curvefold.place_handle"} <= set(notes["operators"])
     layout = Notes()
     panels.HandleList.draw_item(
@@ -353,7 +353,7 @@ def test_a_handle_is_listed_with_all_that_can_be_set(panels, paper):
     )
     assert layout.notes["properties"] == ["enabled", "name"]
     settings.active_handle = 5
-    assert drawn(panels.HandlesPanel)["properties"] == ["handles"]
+    assert drawn(panels.HandlesPanel)["properties"] == ["handles", "least_fold"]
 
 
 def test_every_overlay_can_be_switched(panels, paper):
