@@ -21,8 +21,8 @@ RESOLUTIONS = (4, 1000)
 AUTO, AUTO_VERTICES = "auto", 6000
 #: Vertices that the resolution may be told to use, least and most.
 VERTEX_BUDGETS = (100, 100_000)
-#: How deep every crease point is pulled where handles alone bend the paper, degrees: of the corpus's first 100 drags
-#: the lowest tenth of the crease points rose from 4 to 14 in the median (docs/method.md).
+#: How deep every crease point is pulled where handles alone bend the paper, degrees: of the corpus's first 100
+#: drags the lowest tenth of the crease points rose from 4 to 14 in the median (docs/method.md).
 LEAST_FOLD = 40.0
 #: More iterations than any fold needs.
 MAX_ITERATIONS = 1_000_000
