@@ -1,0 +1,125 @@
+"""Plans from end to end: what is asked in, pages out, and files."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ..errors import DescriptionError
+from ..fold import FoldResult
+from ..pattern.crease_pattern import CreasePattern
+from .board import with_grooves
+from .data import Kind, Plan
+from .pages import pages_of, with_dashes
+from .pen import Page
+from .profile import PAPERS, Profile, dash_lengths, read_profile
+from .sheet import make_plan
+from .source import PlanSource, of_pattern, of_result, read_plan_source
+from .writing import plan_files, write_files
+
+#: Board is at most so thick, mm.
+_MOST_THICKNESS = 50.0
+
+
+@dataclass(frozen=True)
+class PlanDescription:
+    """What a plan is told.
+
+    profile       the name of one of the house, a file, or a profile
+    thickness_mm  of board, for grooves; None: none
+    dash_mm       of all creases instead of the profile's; () for whole lines, None as the profile has it
+    tile          paper on which the plan is printed in pieces; None as the profile has it
+    rulings       whether rulings are drawn where they are known
+    Raises DescriptionError.
+    """
+
+    profile: str | Path | Profile = "origami"
+    thickness_mm: float | None = None
+    dash_mm: tuple[float, ...] | None = None
+    tile: str | None = None
+    rulings: bool = False
+
+    def __post_init__(self) -> None:
+        if self.thickness_mm is not None and not 0.0 < self.thickness_mm <= _MOST_THICKNESS:
+            raise DescriptionError(
+                f"it must be more than 0 and at most {_MOST_THICKNESS:g} mm", element="thickness"
+            )
+        if self.dash_mm is not None:
+            object.__setattr__(self, "dash_mm", dash_lengths(self.dash_mm, "dash"))
+        if self.tile is not None and self.tile not in PAPERS:
+            raise DescriptionError(
+                f"unknown paper {self.tile!r}, expected one of {', '.join(PAPERS)}", element="tile"
+            )
+
+
+@dataclass(frozen=True)
+class PlanResult:
+    """A plan and its pages, as they are drawn."""
+
+    plan: Plan
+    pages: tuple[Page, ...]
+
+
+def plan(
+    source: CreasePattern | FoldResult | PlanSource | str | os.PathLike[str],
+    description: PlanDescription | None = None,
+) -> PlanResult:
+    """The plan of a drawing, of a fold, or of what a path leads to: a drawing, a folded file, a folder of results.
+
+    Raises CurvefoldError where they cannot be a plan as it is described.
+    """
+    told = description or PlanDescription()
+    profile = told.profile if isinstance(told.profile, Profile) else read_profile(told.profile)
+    if told.dash_mm is not None:
+        profile = with_dashes(profile, told.dash_mm)
+    if told.tile is not None:
+        if profile.pages == "front-and-back":
+            raise DescriptionError(
+                f"profile {profile.name!r} makes a front and a back, which are not printed in tiles"
+            )
+        profile = replace(profile, pages="tiles", tile=told.tile, registration=True)
+    _check_grooves(profile, told.thickness_mm)
+    made = make_plan(_source(source, told.rulings), profile.tolerance_mm)
+    if told.thickness_mm is not None:
+        made = with_grooves(
+            made, told.thickness_mm, profile.groove_passes, profile.least_bend_radius, profile.tolerance_mm
+        )
+    if told.rulings and not made.having(Kind.RULING):
+        raise DescriptionError("no rulings are known of it; fold it with --rulings, and give the folder of results")
+    return PlanResult(made, tuple(pages_of(made, profile)))
+
+
+def _check_grooves(profile: Profile, thickness: float | None) -> None:
+    if thickness is None and profile.draws(Kind.GROOVE):
+        raise DescriptionError(f"profile {profile.name!r} draws grooves, which need the board's thickness")
+    if thickness is not None and not profile.draws(Kind.GROOVE):
+        raise DescriptionError(
+            f"profile {profile.name!r} draws no grooves; leave the thickness out, or choose a profile with a layer "
+            "of the kind groove, such as board"
+        )
+
+
+def write_plan(
+    result: PlanResult, path: str | os.PathLike[str], sources: Iterable[str | os.PathLike[str]] = ()
+) -> tuple[Path, ...]:
+    """Write a plan; the suffix says how. Several pages are one PDF, or a file each with the page's name.
+
+    sources: what the plan is made from, which is never written over. Returns the files. Raises CurvefoldError.
+    """
+    files = plan_files(result.pages, path, result.plan.name or "plan")
+    write_files(files, sources)
+    return tuple(files)
+
+
+def _source(
+    source: CreasePattern | FoldResult | PlanSource | str | os.PathLike[str], with_rulings: bool
+) -> PlanSource:
+    if isinstance(source, PlanSource):
+        return source if with_rulings else replace(source, rulings=None)
+    if isinstance(source, FoldResult):
+        return of_result(source, with_rulings)
+    if isinstance(source, CreasePattern):
+        return of_pattern(source)
+    return _source(read_plan_source(source), with_rulings)
