@@ -92,9 +92,9 @@ def plan(
 
 
 def _check_grooves(profile: Profile, thickness: float | None) -> None:
-    if thickness is None and profile.draws(Kind.GROOVE):
+    if thickness is None and profile.grooves:
         raise DescriptionError(f"profile {profile.name!r} draws grooves, which need the board's thickness")
-    if thickness is not None and not profile.draws(Kind.GROOVE):
+    if thickness is not None and not profile.grooves:
         raise DescriptionError(
             f"profile {profile.name!r} draws no grooves; leave the thickness out, or choose a profile with a layer "
             "of the kind groove, such as board"

@@ -87,6 +87,11 @@ class Profile:
     groove_passes: int = 2
     least_bend_radius: float = 10.0
 
+    @property
+    def grooves(self) -> bool:
+        """Whether it is for board of a thickness."""
+        return self.draws(Kind.GROOVE)
+
     def draws(self, kind: Kind) -> bool:
         return any(kind in layer.kinds for layer in self.layers)
 

@@ -32,6 +32,8 @@ _AT_END = 1e-3
 _OFF = 5e-3
 #: Sheets are at least so large, mm: smaller ones are drawings in another unit.
 _LEAST_SIZE = 0.5
+#: What is said of a fold that is none.
+_LIES_FLAT = "the sheet lies flat, so that mountains and valleys are as drawn"
 _KINDS = {"M": Kind.MOUNTAIN, "V": Kind.VALLEY}
 
 
@@ -63,7 +65,7 @@ def make_plan(source: PlanSource, tolerance: float = TOLERANCE) -> Plan:
     ]
     names = [pattern.crease_label(k) for k in range(len(walks))]
     letters = [crease.assignment for crease in pattern.creases]
-    found = None if source.found is None else FoldAngles(placed(source.found.places), source.found.degrees)
+    found, notes = _found(source, placed)
     creases = _crease_strokes(walks, parts, names, letters, found, size)
     strokes = [
         PlanStroke(border, Kind.BORDER, "border", tuple(_corners(border))),
@@ -72,7 +74,16 @@ def make_plan(source: PlanSource, tolerance: float = TOLERANCE) -> Plan:
         *_ruling_strokes(source.rulings, placed),
         *mark_strokes(source, placed, creases),
     ]
-    return Plan(tuple(strokes), width, height, pattern.name, found is not None, source.notes)
+    return Plan(tuple(strokes), width, height, pattern.name, found is not None, notes)
+
+
+def _found(source: PlanSource, placed: Placed) -> tuple[FoldAngles | None, tuple[str, ...]]:
+    """The fold angles in place, None for a sheet that lies flat; and all notes."""
+    if source.found is None:
+        return None, source.notes
+    if float(np.abs(source.found.degrees).max(initial=0.0)) < FLAT_ANGLE:
+        return None, (*source.notes, _LIES_FLAT)
+    return FoldAngles(placed(source.found.places), source.found.degrees), source.notes
 
 
 def _crease_walk(crease: Crease, placed: Placed, tolerance: float, size: float) -> Walk:
@@ -213,4 +224,4 @@ def _ruling_strokes(rulings: FloatArray | None, placed: Placed) -> list[PlanStro
     if rulings is None or not len(rulings):
         return []
     ends = placed(rulings.reshape(-1, 2)).reshape(-1, 2, 2) @ np.array([1.0, 1j])
-    return [PlanStroke(Walk((Line(complex(a), complex(b)),)), Kind.RULING) for a, b in ends.tolist()]
+    return [PlanStroke(Walk((Line(complex(a), complex(b)),)), Kind.RULING, "ruling") for a, b in ends.tolist()]

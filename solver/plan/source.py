@@ -6,7 +6,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 
 from ..arrays import FloatArray
+from ..controls.control import Control
 from ..controls.glue import Glue
 from ..controls.pair import Pair
-from ..description import FoldDescription
+from ..description import FoldDescription, Handle
 from ..errors import CurvefoldError, ReadError
 from ..files.results import FOLD_NAME, REPORT_NAME
 from ..files.ruling_files import RULINGS_SVG
@@ -29,6 +30,8 @@ from ..pattern.read_options import ReadOptions
 from ..pattern.reading import read_pattern
 from ..pattern.source import read_source
 from ..rulings import rulings
+
+Place = tuple[float, float]
 
 #: What is said of a drawing without a unit.
 _NO_UNIT = "the drawing gives no unit, so that one is taken for 1 mm"
@@ -46,8 +49,8 @@ class FoldAngles:
 class Joint:
     """Points or stretches of the border that belong together: the places of either, drawing units."""
 
-    first: tuple[tuple[float, float], ...]
-    second: tuple[tuple[float, float], ...]
+    first: tuple[Place, ...]
+    second: tuple[Place, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +64,7 @@ class PlanSource:
 
     pattern: CreasePattern
     found: FoldAngles | None = None
-    handles: tuple[tuple[float, float], ...] = ()
+    handles: tuple[Place, ...] = ()
     joints: tuple[Joint, ...] = ()
     rulings: FloatArray | None = None
     notes: tuple[str, ...] = ()
@@ -79,7 +82,7 @@ def of_pattern(pattern: CreasePattern) -> PlanSource:
 
 def of_result(result: FoldResult, with_rulings: bool = False) -> PlanSource:
     """A fold: mountains and valleys as they are folded."""
-    handles, joints = _told(result.description)
+    handles, joints = told_places(result.description.handles, result.description.controls)
     flat = rulings(result.net, result.positions).flat if with_rulings else None
     drawn = of_pattern(result.pattern)
     return PlanSource(result.pattern, angles_of(result.measurement), handles, joints, flat, drawn.notes)
@@ -105,7 +108,7 @@ def read_plan_source(path: str | os.PathLike[str], options: ReadOptions | None =
             raise ReadError(f"this folder of results has no {name}", file=str(path))
     source = _read_file(path / FOLD_NAME, options)
     description, name = _read_report(path / REPORT_NAME)
-    handles, joints = _told(description)
+    handles, joints = told_places(description.handles, description.controls)
     pattern = source.pattern.named(name or source.pattern.name, source.pattern.unit_mm)
     flat = _read_rulings(path / RULINGS_SVG, pattern) if (path / RULINGS_SVG).is_file() else None
     return PlanSource(pattern, source.found, handles, joints, flat, source.notes)
@@ -181,14 +184,19 @@ def _read_rulings(path: Path, pattern: CreasePattern) -> FloatArray:
     return np.stack([ends[..., 0] - margin + left, top + margin - ends[..., 1]], axis=-1)
 
 
-def _told(description: FoldDescription) -> tuple[tuple[tuple[float, float], ...], tuple[Joint, ...]]:
-    handles = tuple((handle.at[0], handle.at[1]) for handle in description.handles)
-    return handles, tuple(_joints(description.controls))
+def told_places(
+    handles: Iterable[Handle], controls: Iterable[Control], scale: float = 1.0
+) -> tuple[tuple[Place, ...], tuple[Joint, ...]]:
+    """Where handles are, and what is joined, on the sheet; scale: of their places."""
 
+    def placed(at: Sequence[float]) -> Place:
+        return at[0] * scale, at[1] * scale
 
-def _joints(controls: Iterable[Any]) -> Iterable[Joint]:
+    joints = []
     for control in controls:
         if isinstance(control, Glue):
-            yield Joint(control.first, control.second)
+            first, second = (tuple(map(placed, ends)) for ends in (control.first, control.second))
+            joints.append(Joint(first, second))
         elif isinstance(control, Pair):
-            yield Joint((control.first,), (control.second,))
+            joints.append(Joint((placed(control.first),), (placed(control.second),)))
+    return tuple(placed(handle.at) for handle in handles), tuple(joints)

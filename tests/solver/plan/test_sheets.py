@@ -194,3 +194,10 @@ def test_a_report_that_is_none_is_refused(folded: tuple[solver.FoldResult, Path]
         (tmp_path / "report.json").write_text(text)
         with pytest.raises(solver.CurvefoldError, match=r"report\.json"):
             read_plan_source(tmp_path)
+
+
+def test_a_sheet_that_lies_flat_is_as_it_is_drawn() -> None:
+    plan = flat(square(solver.Crease([(0, 50), (100, 50)], assignment="M")), (20, 50, 0.01), (60, 50, -0.02))
+    assert creases(plan) == [("mountain", "crease 1", 100.0)]
+    assert not plan.folded
+    assert "the sheet lies flat" in plan.notes[-1]
