@@ -18,7 +18,7 @@ from .walk import Walk
 #: Sheets of paper that are made at most.
 MAX_TILES = 100
 #: Below the drawing a strip of this height holds the bar and the page's number, mm.
-_STRIP = 12.0
+_STRIP = 15.0
 #: The bar, its ticks, and the height of letters, mm.
 _BAR, _TICK, _LETTER = 100.0, 10.0, 3.0
 #: Crosses where pages overlap, mm.
@@ -141,11 +141,10 @@ def _strip(at: complex, width: float, label: str, title: str) -> Lines:
     for k in range(int(_BAR / _TICK) + 1):
         tick = at + k * _TICK
         found.append((Walk((Line(tick, tick + 1j * (3.0 if k % 5 == 0 else 1.5)),)), "bar of 100 mm"))
-    found += _words("100 MM, PRINTED AT 100 %", at + 4j, _LETTER)
-    for line, text in enumerate((title, label)):
-        room = width - _BAR - 5.0
-        height = min(_LETTER, _LETTER * room / width_of(text, _LETTER)) if text else _LETTER
-        found += _words(text, at + width - width_of(text, height) + 1j * (4.0 - 4.0 * line), height)
+    found += _words("100 MM, PRINTED AT 100 %", at + 4.2j, _LETTER)
+    text = ": ".join(part for part in (title, label) if part)
+    height = min(_LETTER, _LETTER * width / width_of(text, _LETTER)) if text else _LETTER
+    found += _words(text, at + 8.5j, height)
     return found
 
 
