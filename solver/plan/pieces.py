@@ -20,7 +20,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)  # type: ignore[no-untype
 _PARTS = 16
 #: Newton steps to a place at a given length, and the part of the length that is near enough.
 _STEPS, _NEAR = 20, 1e-12
-#: An arc is drawn as cubics of at most this angle, radians: their error is 3e-4 of the radius at 90 degrees and
+#: An arc is drawn as cubics of at most this angle, radians: their error is 3e-4 of the radius at 90 degrees, and it
 #: falls with the sixth power of the angle.
 _ARC_STEP = math.pi / 8
 
@@ -153,7 +153,7 @@ class Arc:
         return tuple(self.centre + cmath.rect(self.radius, k * math.pi / 2) for k in range(first, last + 1))
 
     def cubics(self) -> list[Cubic]:
-        """The same as cubics, for pens without arcs: nearer than 1e-7 of the radius."""
+        """The same as cubics, for pens without arcs: within 2e-7 of the radius."""
         count = max(math.ceil(abs(self.sweep) / _ARC_STEP), 1)
         handle = 4.0 / 3.0 * math.tan(self.sweep / count / 4.0) * count / self.sweep if self.sweep else 0.0
         found = []
