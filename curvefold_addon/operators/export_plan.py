@@ -49,7 +49,7 @@ class ExportPlan(OnPaper, bpy.types.Operator):
     """
 
     bl_idname = "curvefold.export_plan"
-    bl_label = "Export Crease Pattern Plan"
+    bl_label = "Export Plan"
     bl_options: ClassVar[set[str]] = {"PRESET"}
     only_looks = True
 
