@@ -54,10 +54,8 @@ def _around(walk: Walk, lengths: Sequence[float]) -> list[Walk]:
         return [walk]
     gaps = sum(lengths[1::2])
     spare = walk.length / count - sum(lengths)
-    # The first dash lies about the start.
-    first = -0.5 * lengths[0]
-    rows = _rows(first, list(lengths[::2]), [gap * (1.0 + spare / gaps) for gap in lengths[1::2]], count)
-    return [Walk(walk.part(*((a + walk.length, b + walk.length) if a < 0.0 else (a, b)))) for a, b in rows]
+    rows = _rows(0.0, list(lengths[::2]), [gap * (1.0 + spare / gaps) for gap in lengths[1::2]], count)
+    return [Walk(walk.part(a, b)) for a, b in rows]
 
 
 def _rows(start: float, dashes: list[float], gaps: list[float], count: int) -> list[tuple[float, float]]:

@@ -42,8 +42,55 @@ def _segment_length(segment: Any) -> float:
     return float(segment.length()) if segment.start is not None and segment.end is not None else 0.0
 
 
+def pdf_points(data: bytes) -> list[Any]:
+    """Of the first page, millimetres."""
+    reader = pypdf.PdfReader(io.BytesIO(data))
+    found: list[Any] = []
+    here = start = np.zeros(2)
+    t = np.linspace(0.0, 1.0, 400)[:, None]
+    s = 1.0 - t
+    for operands, operator in ContentStream(reader.pages[0].get_contents(), reader).operations:
+        values = np.array([float(v) for v in operands if isinstance(v, int | float)])
+        if operator == b"m":
+            here = start = values
+        elif operator == b"l":
+            found.append(np.array([here, values]))
+            here = values
+        elif operator == b"c":
+            a, b, c = values.reshape(3, 2)
+            found.append(s**3 * here + 3 * s * s * t * a + 3 * s * t * t * b + t**3 * c)
+            here = c
+        elif operator == b"s" and (here != start).any():
+            found.append(np.array([here, start]))
+    return found
+
+
 def polyline_length(points: Any) -> float:
     return float(np.hypot(*np.diff(np.asarray(points, dtype=float)[:, :2], axis=0).T).sum())
+
+
+def svg_points(data: bytes, height: float) -> list[Any]:
+    """Polylines (P,2) along all lines, y up as on the page of this height."""
+    found = []
+    for shape in svgelements.SVG.parse(io.BytesIO(data), ppi=25.4, reify=True).elements():
+        if isinstance(shape, svgelements.Shape):
+            for segment in svgelements.Path(shape):
+                if not isinstance(segment, svgelements.Move) and segment.start != segment.end:
+                    places = [segment.point(t) for t in np.linspace(0.0, 1.0, 400)]
+                    found.append(np.array([(point.x, height - point.y) for point in places]))
+    return found
+
+
+def dxf_points(data: bytes) -> list[Any]:
+    return [row for entity in read_dxf(data).modelspace() for row in _dxf_rows(entity)]
+
+
+def _dxf_rows(entity: Any) -> list[Any]:
+    if entity.dxftype() == "LWPOLYLINE":
+        return [row for part in entity.virtual_entities() for row in _dxf_rows(part)]
+    straight = entity.dxftype() == "LINE"
+    points = [entity.dxf.start, entity.dxf.end] if straight else list(entity.flattening(1e-4))
+    return [np.array([(point.x, point.y) for point in points])]
 
 
 def cubic_length(a: Any, b: Any, c: Any, d: Any) -> float:

@@ -5,9 +5,11 @@ import re
 from pathlib import Path
 
 import ezdxf
+import numpy as np
 import plan_readers
 import pypdf
 import pytest
+import shapely
 
 import solver
 from solver.plan.data import Kind
@@ -53,6 +55,22 @@ def test_every_format_has_every_line_at_its_true_length(sample: solver.CreasePat
         for page, expected in zip(found, wanted, strict=True):
             for layer, length in expected.items():
                 assert page[layer] == pytest.approx(length, abs=NEAR, rel=1e-6), layer
+
+
+def test_every_format_has_every_line_in_its_place(sample: solver.CreasePattern) -> None:
+    result = plan(sample, PlanDescription("laser-glowforge"))
+    (page,) = result.pages
+    drawn = [walk.samples(1e-4)[0] for part in page.layers for walk, _ in part.lines]
+    wanted = shapely.MultiLineString(drawn)
+    for found in (
+        plan_readers.svg_points(*contents(result, ".svg"), page.height),
+        plan_readers.dxf_points(*contents(result, ".dxf")),
+        plan_readers.pdf_points(*contents(result, ".pdf")),
+    ):
+        # Both ways: nothing is missing, and nothing lies elsewhere.
+        ours, theirs = (shapely.points(np.vstack(rows)) for rows in (drawn, found))
+        assert shapely.distance(wanted, theirs).max() < NEAR
+        assert shapely.distance(shapely.MultiLineString(found), ours).max() < NEAR
 
 
 def test_a_circle_stays_a_circle_and_an_arc_an_arc() -> None:
