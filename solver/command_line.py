@@ -22,8 +22,8 @@ from .fold import FoldResult, fold, in_words
 from .folding import SqpReport
 from .pattern.read_options import BORDERS, UNITS_MM, ReadOptions
 from .pattern.reading import DRAWING_SUFFIXES, read_pattern
-from .plan.planning import PlanDescription, plan, write_plan
-from .plan.profile import PAPERS, profile_names
+from .plan.planning import PlanDescription, check_grooves, plan, write_plan
+from .plan.profile import PAPERS, profile_names, read_profile
 from .plan.source import plan_sources, read_plan_source
 from .plan.writing import PENS
 from .verify_mesh import verdict, verify_mesh
@@ -73,7 +73,20 @@ def add_fold_arguments(parser: argparse.ArgumentParser) -> None:
         "--rulings", action="store_true",
         help="write the rulings (rulings.obj, rulings.svg) and the Gauss image (gauss_image.obj) too",
     )  # fmt: skip
+    parser.add_argument(
+        "--plan", choices=[suffix.removeprefix(".") for suffix in PENS], default=None,
+        help="write the plan of the folded sheet too: plan.svg, plan.dxf or plan.pdf, for a machine or a hand",
+    )  # fmt: skip
+    _add_profile_argument(parser)
     _add_read_arguments(parser)
+
+
+def _add_profile_argument(parser: argparse.ArgumentParser) -> None:
+    default = PlanDescription().profile
+    parser.add_argument(
+        "--profile", default=default, metavar="NAME",
+        help=f"what a plan is for: {', '.join(profile_names())}, or a file *.toml (default {default})",
+    )  # fmt: skip
 
 
 def add_version_argument(parser: argparse.ArgumentParser) -> None:
@@ -148,7 +161,12 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
     said: tuple[str, ...] = ()
     try:
         folder = Path(args.out)
-        _check_apart(Path(args.pattern), folder)
+        planned = None if args.plan is None else folder / f"plan.{args.plan}"
+        _check_apart(
+            Path(args.pattern), [folder / FOLD_NAME, folder / RULINGS_SVG, *([planned] if planned else [])]
+        )
+        asked = PlanDescription(read_profile(args.profile) if planned else "origami", rulings=args.rulings)
+        check_grooves(asked)
         description = description_of(args)
         check_writable(folder, result_names(args.rulings))
         pattern = read_pattern(args.pattern, read_options_of(args))
@@ -161,6 +179,8 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
             source = _source(args, error.where.element or "")
             raise error.in_file(str(source)) if error.where.file is None else error from None
         write_results(result, folder, args.rulings)
+        if planned is not None:
+            write_plan(plan(result, asked), planned, [args.pattern])
         if on_result is not None:
             on_result(result, folder)
     except CurvefoldError as error:
@@ -196,7 +216,6 @@ def run_verify(args: argparse.Namespace, stream: TextIO) -> int:
 
 def add_plan_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of ``plan``."""
-    default = PlanDescription()
     parser.add_argument(
         "source", metavar="DRAWING|FOLDED.fold|FOLDER",
         help="a drawing, a folded FOLD file, or a folder of results: of these mountains and valleys are as folded",
@@ -205,10 +224,7 @@ def add_plan_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", required=True, metavar="FILE",
         help=f"the file to write ({', '.join(PENS)}); several pages are several files, or one PDF",
     )  # fmt: skip
-    parser.add_argument(
-        "--profile", default=default.profile, metavar="NAME",
-        help=f"what it is for: {', '.join(profile_names())}, or a file *.toml (default {default.profile})",
-    )  # fmt: skip
+    _add_profile_argument(parser)
     parser.add_argument(
         "--thickness", type=float, default=None, metavar="MM",
         help="thickness of board: V-grooves as wide as the fold needs (profile board)",
@@ -268,9 +284,9 @@ def _print_notes(notes: Iterable[str], stream: TextIO) -> None:
         print(f"note: {note}", file=stream)
 
 
-def _check_apart(drawing: Path, folder: Path) -> None:
+def _check_apart(drawing: Path, results: Iterable[Path]) -> None:
     """Raises CurvefoldError when a result would be written over the drawing."""
-    if os.path.realpath(drawing) in {os.path.realpath(folder / name) for name in (FOLD_NAME, RULINGS_SVG)}:
+    if os.path.realpath(drawing) in {os.path.realpath(path) for path in results}:
         raise CurvefoldError("the result would be written over it; choose another folder", file=str(drawing))
 
 

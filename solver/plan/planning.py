@@ -53,6 +53,10 @@ class PlanDescription:
                 f"unknown paper {self.tile!r}, expected one of {', '.join(PAPERS)}", element="tile"
             )
 
+    def read(self) -> Profile:
+        """Its profile. Raises DescriptionError."""
+        return self.profile if isinstance(self.profile, Profile) else read_profile(self.profile)
+
 
 @dataclass(frozen=True)
 class PlanResult:
@@ -71,7 +75,8 @@ def plan(
     Raises CurvefoldError where they cannot be a plan as it is described.
     """
     told = description or PlanDescription()
-    profile = told.profile if isinstance(told.profile, Profile) else read_profile(told.profile)
+    check_grooves(told)
+    profile = told.read()
     if told.dash_mm is not None:
         profile = with_dashes(profile, told.dash_mm)
     if told.tile is not None:
@@ -80,7 +85,6 @@ def plan(
                 f"profile {profile.name!r} makes a front and a back, which are not printed in tiles"
             )
         profile = replace(profile, pages="tiles", tile=told.tile, registration=True)
-    _check_grooves(profile, told.thickness_mm)
     made = make_plan(_source(source, told.rulings), profile.tolerance_mm)
     if told.thickness_mm is not None:
         made = with_grooves(
@@ -91,7 +95,9 @@ def plan(
     return PlanResult(made, tuple(pages_of(made, profile)))
 
 
-def _check_grooves(profile: Profile, thickness: float | None) -> None:
+def check_grooves(told: PlanDescription) -> None:
+    """Raises DescriptionError where there is a thickness without grooves, or grooves without a thickness."""
+    profile, thickness = told.read(), told.thickness_mm
     if thickness is None and profile.grooves:
         raise DescriptionError(f"profile {profile.name!r} draws grooves, which need the board's thickness")
     if thickness is not None and not profile.grooves:

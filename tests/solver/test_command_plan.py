@@ -118,3 +118,37 @@ def test_a_place_that_cannot_be_written_is_refused(tmp_path: Path) -> None:
     assert "only .svg, .dxf, .pdf" in words
     (tmp_path / "folder.svg").mkdir()
     assert run(LENS, "--out", tmp_path / "folder.svg")[0] == BAD_INPUT
+
+
+def fold(*arguments: object) -> tuple[int, str]:
+    stream = io.StringIO()
+    code = main(["fold", *map(str, arguments), "--resolution", "10", "--angle", "40"], stream)
+    return code, stream.getvalue()
+
+
+def test_a_fold_writes_its_plan_beside_its_results(tmp_path: Path) -> None:
+    assert fold(LENS, "--plan", "svg", "--profile", "laser-glowforge", "--out", tmp_path)[0] == REACHED
+    text = (tmp_path / "plan.svg").read_text()
+    assert 'inkscape:label="score valley"' in text
+    assert {path.name for path in tmp_path.iterdir()} == {"folded.obj", "folded.fold", "plan.svg", "report.json"}
+
+
+def test_what_a_plan_lacks_is_said_before_the_fold(tmp_path: Path) -> None:
+    for arguments, sentence in (
+        (["--profile", "origamy"], "the nearest known one is 'origami'"),
+        (["--profile", "board"], "need the board's thickness"),
+    ):
+        code, words = fold(LENS, "--plan", "svg", *arguments, "--out", tmp_path / "out")
+        assert code == BAD_INPUT
+        assert sentence in words
+        assert "iterations" not in words
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_plan_is_not_written_over_the_drawing_that_is_folded(tmp_path: Path) -> None:
+    drawing = tmp_path / "plan.svg"
+    shutil.copy(LENS, drawing)
+    code, words = fold(drawing, "--plan", "svg", "--out", tmp_path)
+    assert code == BAD_INPUT
+    assert "the result would be written over it" in words
+    assert [path.name for path in tmp_path.iterdir()] == ["plan.svg"]
