@@ -54,9 +54,9 @@ def with_grooves(plan: Plan, thickness: float, passes: int, least_bend_radius: f
     return Plan((*plan.strokes, *grooves), plan.width, plan.height, plan.name, plan.folded, plan.notes)
 
 
-def groove_width(thickness: float, degrees: float) -> float:
-    """Width at the face, in the unit of the thickness."""
-    return 2.0 * thickness * math.tan(math.radians(degrees) / 2.0)
+def groove_width(thickness: float, degrees: FloatArray) -> FloatArray:
+    """Widths at the face (n,), in the unit of the thickness."""
+    return np.asarray(2.0 * thickness * np.tan(np.radians(degrees) / 2.0))
 
 
 def _grooves(
@@ -80,7 +80,7 @@ def _grooves(
         inside = np.clip(along, start + 1e-6, end - 1e-6) if not whole else along
         ways = np.array([walk.way(length) for length in inside.tolist()])
         points = np.array([walk.at(length) for length in along.tolist()])
-        half = thickness * np.tan(np.radians(degrees) / 2.0)
+        half = 0.5 * groove_width(thickness, degrees)
         _check(stroke, points, ways, along, degrees, half, thickness, least_bend_radius)
         if not whole:
             points, ways, half = _beyond_edges(points, ways, half, edges)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import cmath
 import itertools
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -76,10 +75,6 @@ class Line:
         """Parameters whose chords are within a tolerance of the piece, both ends included."""
         return [0.0, 1.0]
 
-    def hull(self) -> tuple[complex, ...]:
-        """Points whose box holds the piece."""
-        return self.start, self.end
-
 
 @dataclass(frozen=True)
 class Arc:
@@ -142,15 +137,6 @@ class Arc:
         step = 2.0 * math.acos(max(1.0 - tolerance / self.radius, 0.5)) if self.radius > 0 else math.pi
         count = max(math.ceil(abs(self.sweep) / step), 2)
         return [k / count for k in range(count + 1)]
-
-    def hull(self) -> tuple[complex, ...]:
-        return tuple(self.at(k / 16) for k in range(17)) + self._extremes()
-
-    def _extremes(self) -> tuple[complex, ...]:
-        low, high = sorted((self.begin, self.begin + self.sweep))
-        first = math.ceil(low / (math.pi / 2))
-        last = math.floor(high / (math.pi / 2))
-        return tuple(self.centre + cmath.rect(self.radius, k * math.pi / 2) for k in range(first, last + 1))
 
     def cubics(self) -> list[Cubic]:
         """The same as cubics, for pens without arcs: within 2e-7 of the radius."""
@@ -251,15 +237,5 @@ class Cubic:
         count = max(math.ceil(math.sqrt(6.0 * bend / (8.0 * tolerance))), 4)
         return [k / count for k in range(count + 1)]
 
-    def hull(self) -> tuple[complex, ...]:
-        return self.points
-
 
 Piece = Line | Arc | Cubic
-
-
-def points_along(pieces: tuple[Piece, ...], tolerance: float) -> Iterator[tuple[int, float, complex]]:
-    """Which piece, parameter and point, of samples whose chords are within a tolerance of joined pieces."""
-    for index, piece in enumerate(pieces):
-        for t in piece.samples(tolerance)[0 if index == 0 else 1 :]:
-            yield index, t, piece.at(t)

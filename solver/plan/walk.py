@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import shapely
 
 from ..arrays import FloatArray
 from .pieces import Motion, Piece
@@ -90,15 +88,3 @@ class Walk:
 
     def reversed(self) -> Walk:
         return Walk(tuple(piece.reversed() for piece in reversed(self.pieces)), self.closed)
-
-
-def polygon_of(walk: Walk, tolerance: float) -> shapely.Polygon:
-    """The area inside a closed walk."""
-    return shapely.Polygon(walk.samples(tolerance)[0])
-
-
-def box_of(walks: Sequence[Walk]) -> tuple[float, float, float, float]:
-    """x and y minimum, x and y maximum; curves may reach less far."""
-    points = np.array([point for walk in walks for piece in walk.pieces for point in piece.hull()])
-    x, y = points.real, points.imag
-    return float(x.min()), float(y.min()), float(x.max()), float(y.max())
