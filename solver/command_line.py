@@ -238,6 +238,10 @@ def add_plan_arguments(parser: argparse.ArgumentParser) -> None:
         "--tile", choices=tuple(PAPERS), default=None,
         help="print it in pieces on this paper, with marks to join them",
     )  # fmt: skip
+    parser.add_argument(
+        "--tabs", type=float, default=None, metavar="MM",
+        help="add tabs of this width where a folder of results has glued borders",
+    )  # fmt: skip
     parser.add_argument("--rulings", action="store_true", help="draw the rulings of a folder of results")
     _add_read_arguments(parser)
 
@@ -249,7 +253,7 @@ def run_plan(args: argparse.Namespace, stream: TextIO) -> int:
     """
     said: tuple[str, ...] = ()
     try:
-        told = PlanDescription(args.profile, args.thickness, args.dash, args.tile, args.rulings)
+        told = PlanDescription(args.profile, args.thickness, args.dash, args.tile, args.tabs, args.rulings)
         source = read_plan_source(args.source, read_options_of(args))
         said = source.notes
         _print_notes(said, stream)

@@ -71,6 +71,16 @@ class ExportPlan(OnPaper, bpy.types.Operator):
         precision=4,
     )
     tile: EnumProperty(name="Pages", description="The paper that the plan is printed on", items=TILES)
+    tabs: FloatProperty(
+        name="Tabs",
+        description="Width of the tabs along borders that are glued; 0 for none",
+        default=0.0,
+        min=0.0,
+        soft_max=0.02,
+        max=0.1,
+        unit="LENGTH",
+        precision=4,
+    )
     rulings: BoolProperty(name="Rulings", description="Draw the rulings of the paper as it is folded now")
     scale: FloatProperty(
         name="Scale", description="Factor on the paper's size", default=1.0, min=1e-4, soft_max=100.0, max=1e4
@@ -103,6 +113,7 @@ class ExportPlan(OnPaper, bpy.types.Operator):
         if self.profile == "board":
             layout.prop(self, "thickness")
         layout.prop(self, "tile")
+        layout.prop(self, "tabs")
         layout.prop(self, "rulings")
         layout.prop(self, "scale")
 
@@ -131,11 +142,12 @@ class ExportPlan(OnPaper, bpy.types.Operator):
     def _description(self, context: bpy.types.Context) -> solver.PlanDescription:
         own = bpy.path.abspath(self.profile_file) if self.profile == OWN_FILE else self.profile
         profile = read_profile(own)
-        scale = context.scene.unit_settings.scale_length
+        scale = _MM * context.scene.unit_settings.scale_length
         return solver.PlanDescription(
             profile,
             # Blender keeps single precision, of which seven digits are meant.
-            thickness_mm=float(f"{self.thickness * _MM * scale:.7g}") if profile.grooves else None,
+            thickness_mm=float(f"{self.thickness * scale:.7g}") if profile.grooves else None,
+            tabs_mm=float(f"{self.tabs * scale:.7g}") or None,
             tile=None if self.tile == AS_PROFILE else self.tile,
             rulings=self.rulings,
         )

@@ -15,12 +15,15 @@ from .data import Kind, Plan
 from .pages import pages_of, with_dashes
 from .pen import Page
 from .profile import PAPERS, Profile, dash_lengths, read_profile
-from .sheet import make_plan
+from .sheet import make_plan, placing
 from .source import PlanSource, of_pattern, of_result, read_plan_source
+from .tabs import with_tabs
 from .writing import plan_files, write_files
 
 #: Board is at most so thick, mm.
 _MOST_THICKNESS = 50.0
+#: Tabs are at most so wide, mm.
+_MOST_TABS = 100.0
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,7 @@ class PlanDescription:
     thickness_mm  of board, for grooves; None: none
     dash_mm       of all creases instead of the profile's; () for whole lines, None as the profile has it
     tile          paper on which the plan is printed in pieces; None as the profile has it
+    tabs_mm       width of tabs along glued borders; None: none
     rulings       whether rulings are drawn where they are known
     Raises DescriptionError.
     """
@@ -39,6 +43,7 @@ class PlanDescription:
     thickness_mm: float | None = None
     dash_mm: tuple[float, ...] | None = None
     tile: str | None = None
+    tabs_mm: float | None = None
     rulings: bool = False
 
     def __post_init__(self) -> None:
@@ -46,6 +51,8 @@ class PlanDescription:
             raise DescriptionError(
                 f"it must be more than 0 and at most {_MOST_THICKNESS:g} mm", element="thickness"
             )
+        if self.tabs_mm is not None and not 0.0 < self.tabs_mm <= _MOST_TABS:
+            raise DescriptionError(f"they must be more than 0 and at most {_MOST_TABS:g} mm wide", element="tabs")
         if self.dash_mm is not None:
             object.__setattr__(self, "dash_mm", dash_lengths(self.dash_mm, "dash"))
         if self.tile is not None and self.tile not in PAPERS:
@@ -85,11 +92,14 @@ def plan(
                 f"profile {profile.name!r} makes a front and a back, which are not printed in tiles"
             )
         profile = replace(profile, pages="tiles", tile=told.tile, registration=True)
-    made = make_plan(_source(source, told.rulings), profile.tolerance_mm)
+    known = _source(source, told.rulings)
+    made = make_plan(known, profile.tolerance_mm)
     if told.thickness_mm is not None:
         made = with_grooves(
             made, told.thickness_mm, profile.groove_passes, profile.least_bend_radius, profile.tolerance_mm
         )
+    if told.tabs_mm is not None:
+        made = with_tabs(made, known.joints, placing(known), told.tabs_mm)
     if told.rulings and not made.having(Kind.RULING):
         raise DescriptionError("no rulings are known of it; fold it with --rulings, and give the folder of results")
     return PlanResult(made, tuple(pages_of(made, profile)))

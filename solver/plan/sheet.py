@@ -47,9 +47,7 @@ def make_plan(source: PlanSource, tolerance: float = TOLERANCE) -> Plan:
             f"the sheet is {width:.3g} mm by {height:.3g} mm, too small to be made; give the drawing's unit"
         )
 
-    def placed(points: FloatArray) -> FloatArray:
-        return np.asarray((points - low) * unit)
-
+    placed = placing(source)
     border = of_points(placed(pattern.boundary), True, tolerance)
     holes = [of_points(placed(hole), True, tolerance) for hole in pattern.holes]
     paper = shapely.Polygon(placed(pattern.boundary), [placed(hole) for hole in pattern.holes])
@@ -75,6 +73,16 @@ def make_plan(source: PlanSource, tolerance: float = TOLERANCE) -> Plan:
         *mark_strokes(source, placed, creases),
     ]
     return Plan(tuple(strokes), width, height, pattern.name, found is not None, notes)
+
+
+def placing(source: PlanSource) -> Placed:
+    """From the drawing's places (n,2) to the plan's, mm."""
+    low = source.pattern.boundary.min(axis=0)
+
+    def placed(points: FloatArray) -> FloatArray:
+        return np.asarray((points - low) * source.unit_mm)
+
+    return placed
 
 
 def _found(source: PlanSource, placed: Placed) -> tuple[FoldAngles | None, tuple[str, ...]]:

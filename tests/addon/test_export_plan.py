@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 
+import bmesh
 import bpy
 import papers
 import pytest
@@ -154,3 +155,24 @@ def test_it_stands_in_the_menu_and_changes_nothing(folded, export):
     assert any(
         entry.__module__.endswith("export_plan") for entry in bpy.types.TOPBAR_MT_file_export._dyn_ui_initialize()
     )
+
+
+STRIP = """<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="40mm" viewBox="0 0 120 40">
+<rect width="120" height="40" fill="none" stroke="black"/>
+<path d="M 0 20 H 120" fill="none" stroke="red"/>
+</svg>
+"""
+
+
+def test_glued_borders_have_tabs(extension, live, export, tmp_path):
+    strip = papers.paper_of(extension, tmp_path, STRIP, resolution=12)
+    _edited, flat = papers.edit(strip)
+    for vertex, place in flat.items():
+        vertex.select = abs(abs(place.x) - 0.06) < 1e-6
+    bmesh.update_edit_mesh(strip.data)
+    assert bpy.ops.curvefold.glue_borders() == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert 'width="130mm"' in export().read_text(encoding="utf-8")
+    path = export(tabs=0.01)
+    assert 'width="140mm"' in path.read_text(encoding="utf-8")
+    assert "tab 1" in layers(path)["flat"]

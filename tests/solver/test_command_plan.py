@@ -99,6 +99,8 @@ def test_a_plan_is_a_drawing_that_reads_as_itself(tmp_path: Path) -> None:
         (["--rulings"], "no rulings are known"),
         (["--unit", "furlong"], "unit"),
         (["--dash", "3,1,2"], "a dash and a gap"),
+        (["--tabs", "8"], "no glued borders are known"),
+        (["--tabs", "-8"], "more than 0"),
     ],
 )
 def test_what_cannot_be_is_one_sentence(tmp_path: Path, arguments: list[str], sentence: str) -> None:
