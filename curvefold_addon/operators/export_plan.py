@@ -124,7 +124,9 @@ class ExportPlan(OnPaper, bpy.types.Operator):
             return self.refuse("The paper is baked; free its bake to write its plan")
         path = Path(bpy.path.abspath(self.filepath))
         with busy(context):
-            source = plan_source(live.make_session(paper), paper.name, self._unit_scale(context), self.rulings)
+            session = live.make_session(paper)
+            told = live.read_inputs(paper, session, context.scene, context.evaluated_depsgraph_get())
+            source = plan_source(session, told, paper.name, self._unit_scale(context), self.rulings)
             result = solver.plan(source, self._description(context))
             files = solver.write_plan(result, path if path.suffix else path.with_suffix(self.file_format))
         for note in result.plan.notes:

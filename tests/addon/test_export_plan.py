@@ -176,3 +176,29 @@ def test_glued_borders_have_tabs(extension, live, export, tmp_path):
     path = export(tabs=0.01)
     assert 'width="140mm"' in path.read_text(encoding="utf-8")
     assert "tab 1" in layers(path)["flat"]
+
+
+def test_a_paper_that_keeps_its_drawings_units_is_as_large_and_folded(extension, live, folder, export):
+    pattern = extension("solver").read_pattern(extension("curvefold_addon.samples").FOLDER / "waves.svg")
+    corner = extension("solver").Handle((210.0, 148.0), (210.0, 148.0, 0.0))
+    description = extension("solver").FoldDescription(resolution=16, angle=50.0, handles=(corner,))
+    result = extension("solver").fold(pattern, description)
+    paper = extension("curvefold_addon.bridge.mesh").add_paper(result, bpy.context.collection, None)
+    extension("curvefold_addon.bridge.papers").keep(paper, result)
+    bpy.context.view_layer.objects.active = paper
+    assert live.make_session(paper).source.scale == pytest.approx(0.001)
+    text = export(rulings=True).read_text(encoding="utf-8")
+    assert 'width="220mm" height="158mm"' in text
+    found = layers(export(rulings=True))
+    sides = [result.measurement.side(k) for k in range(3)]
+    assert len(found["valley"]) == sides.count("V")
+    assert len(found["mountain"]) == sides.count("M")
+    assert found["marks"] == ["handle 1"] * 2
+    # A cross at the corner, 5 mm from the upper right one of the page; Blender keeps single precision.
+    ends = re.search(r'label="handle 1" d="M([\d.]+),([\d.]+)L([\d.]+),([\d.]+)"', text).groups()
+    assert [float(value) for value in ends] == pytest.approx([213.0, 5.0, 217.0, 5.0], abs=1e-3)
+    # Rulings lie on the sheet.
+    (body,) = re.findall(r'inkscape:label="rulings"(.*?)</g>', text, re.S)
+    across = [float(x) for x in re.findall(r"[ML](\d[\d.]*),", body)]
+    assert 5.0 <= min(across) < 60.0
+    assert 160.0 < max(across) <= 215.0
