@@ -25,7 +25,7 @@ from .pattern.reading import DRAWING_SUFFIXES, read_pattern
 from .plan.planning import PlanDescription, check_grooves, plan, write_plan
 from .plan.profile import PAPERS, profile_names, read_profile
 from .plan.source import plan_sources, read_plan_source
-from .plan.writing import PENS
+from .plan.writing import PENS, check_place
 from .verify_mesh import verdict, verify_mesh
 from .version import in_words as version_in_words
 
@@ -161,10 +161,10 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
     said: tuple[str, ...] = ()
     try:
         folder = Path(args.out)
+        _check_apart(Path(args.pattern), folder)
         planned = None if args.plan is None else folder / f"plan.{args.plan}"
-        _check_apart(
-            Path(args.pattern), [folder / FOLD_NAME, folder / RULINGS_SVG, *([planned] if planned else [])]
-        )
+        if planned is not None:
+            check_place(planned, [args.pattern])
         asked = PlanDescription(read_profile(args.profile) if planned else "origami", rulings=args.rulings)
         check_grooves(asked)
         description = description_of(args)
@@ -288,9 +288,9 @@ def _print_notes(notes: Iterable[str], stream: TextIO) -> None:
         print(f"note: {note}", file=stream)
 
 
-def _check_apart(drawing: Path, results: Iterable[Path]) -> None:
+def _check_apart(drawing: Path, folder: Path) -> None:
     """Raises CurvefoldError when a result would be written over the drawing."""
-    if os.path.realpath(drawing) in {os.path.realpath(path) for path in results}:
+    if os.path.realpath(drawing) in {os.path.realpath(folder / name) for name in (FOLD_NAME, RULINGS_SVG)}:
         raise CurvefoldError("the result would be written over it; choose another folder", file=str(drawing))
 
 

@@ -53,21 +53,26 @@ def write_files(files: dict[Path, bytes], sources: Iterable[str | os.PathLike[st
     sources: what the plan is made from. Raises CurvefoldError, before anything is written, where a file would be
     written over one of them, over a file that is no plan, or cannot be written.
     """
-    own = {os.path.realpath(source) for source in sources}
+    own = list(sources)
     for path in files:
-        if os.path.realpath(path) in own:
-            raise CurvefoldError(
-                "the plan would be written over what it is made from; choose another name", file=str(path)
-            )
-        check_writable(path.parent, [path.name])
-        if path.exists() and not _is_plan(path):
-            raise CurvefoldError("a file that is no plan has this name already; choose another one", file=str(path))
+        check_place(path, own)
     for path, content in files.items():
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise CurvefoldError(f"the folder cannot be made ({error.strerror})", file=str(path.parent)) from None
         write_whole(path, content)
+
+
+def check_place(path: Path, sources: Iterable[str | os.PathLike[str]] = ()) -> None:
+    """Raises CurvefoldError where a plan must not be written, or cannot be."""
+    if os.path.realpath(path) in {os.path.realpath(source) for source in sources}:
+        raise CurvefoldError(
+            "the plan would be written over what it is made from; choose another name", file=str(path)
+        )
+    check_writable(path.parent, [path.name])
+    if path.exists() and not _is_plan(path):
+        raise CurvefoldError("a file that is no plan has this name already; choose another one", file=str(path))
 
 
 def _is_plan(path: Path) -> bool:

@@ -152,5 +152,9 @@ def test_a_plan_is_not_written_over_the_drawing_that_is_folded(tmp_path: Path) -
     shutil.copy(LENS, drawing)
     code, words = fold(drawing, "--plan", "svg", "--out", tmp_path)
     assert code == BAD_INPUT
-    assert "the result would be written over it" in words
+    assert "over what it is made from" in words
+    assert [path.name for path in tmp_path.iterdir()] == ["plan.svg"]
+    code, words = fold(LENS, "--plan", "svg", "--out", tmp_path)
+    assert code == BAD_INPUT
+    assert "a file that is no plan has this name already" in words
     assert [path.name for path in tmp_path.iterdir()] == ["plan.svg"]
