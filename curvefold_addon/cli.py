@@ -1,4 +1,4 @@
-"""``blender --command curvefold fold …``, ``… batch …`` and ``… verify …``.
+"""``blender --command curvefold fold …``, ``… batch …``, ``… verify …`` and ``… plan …``.
 
 With the bpy module instead of a Blender program, ``python -m curvefold_addon fold …`` in a checkout
 calls the same ``main``.
@@ -27,7 +27,7 @@ _command = None
 
 
 def main(argv: list[str]) -> int:
-    """Runs ``fold …``, ``batch …`` or ``verify …`` and returns the exit code, also after Ctrl-C."""
+    """Runs ``fold …``, ``batch …``, ``verify …`` or ``plan …`` and returns the exit code, also after Ctrl-C."""
     try:
         with interrupts.said_once(), every_word_printable():
             return _main(argv)
@@ -101,6 +101,11 @@ def run_verify(arguments: argparse.Namespace, rest: list[str]) -> int:
     return int(command_line.run_verify(arguments, sys.stderr))
 
 
+def run_plan(arguments: argparse.Namespace, rest: list[str]) -> int:
+    """Writes the flat sheet for a machine or a hand."""
+    return int(command_line.run_plan(arguments, sys.stderr))
+
+
 def _show(result: solver.FoldResult, arguments: argparse.Namespace) -> None:
     # An empty file, whatever the user's start-up file holds; the extension stays enabled.
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
@@ -136,7 +141,7 @@ def _add_rulings(paper: bpy.types.Object, result: solver.FoldResult) -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog=COMMAND, description="Folds paper along curves.", allow_abbrev=False)
     command_line.add_version_argument(parser)
-    commands = parser.add_subparsers(title="commands", required=True, metavar="fold | batch | verify")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="fold | batch | verify | plan")
     fold = commands.add_parser(
         "fold", help="fold one drawing", description="Folds one drawing.", allow_abbrev=False
     )
@@ -161,6 +166,14 @@ def _parser() -> argparse.ArgumentParser:
     )
     command_line.add_verify_arguments(check)
     check.set_defaults(run=run_verify)
+    sheet = commands.add_parser(
+        "plan",
+        help="write the flat sheet for a machine or a hand",
+        description="Writes the flat sheet of a drawing or a fold as SVG, DXF or PDF.",
+        allow_abbrev=False,
+    )
+    command_line.add_plan_arguments(sheet)
+    sheet.set_defaults(run=run_plan)
     return parser
 
 

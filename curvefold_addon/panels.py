@@ -270,6 +270,7 @@ class DrawingPanel(PaperPanel, bpy.types.Panel):
             box = KeptBox(self.layout, context, DRAWING_LINES)
             _say_troubles(box, sheet)
             box.fill()
+        self.layout.operator("curvefold.export_plan", icon="EXPORT")
 
 
 class NotesPanel(Tab, bpy.types.Panel):

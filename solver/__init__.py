@@ -3,6 +3,7 @@
     pattern = solver.read_pattern("x.svg")
     result = solver.fold(pattern, solver.FoldDescription(angle=60.0))
     solver.write_results(result, "out")
+    solver.write_plan(solver.plan(result, solver.PlanDescription("laser-lightburn")), "out/plan.dxf")
 
 or step by step: ``build_net``, ``FoldModel``, ``measure``.
 """
@@ -36,6 +37,10 @@ from .net.resolution import Resolution, choose_resolution
 from .pattern.crease_pattern import Crease, CreasePattern
 from .pattern.read_options import ReadOptions
 from .pattern.reading import DRAWING_SUFFIXES, read_pattern, read_patterns
+from .plan.planning import PlanDescription, PlanResult, plan, write_plan
+from .plan.profile import profile_names
+from .plan.source import PlanSource, read_plan_source
+from .plan.source import of_result as plan_source
 from .rulings import RulingKind, Rulings, rulings
 from .sheet_mesh import SheetMesh
 from .verify import Fault, Verification, verify
@@ -65,6 +70,9 @@ __all__ = [
     "Pair",
     "PatternError",
     "PiecewiseDog",
+    "PlanDescription",
+    "PlanResult",
+    "PlanSource",
     "ReadError",
     "ReadOptions",
     "RenderMap",
@@ -83,13 +91,18 @@ __all__ = [
     "gauss_area",
     "gauss_image",
     "measure",
+    "plan",
+    "plan_source",
+    "profile_names",
     "read_description",
     "read_handles",
     "read_mesh",
     "read_pattern",
     "read_patterns",
+    "read_plan_source",
     "rulings",
     "verify",
     "verify_mesh",
+    "write_plan",
     "write_results",
 ]

@@ -22,6 +22,10 @@ from .fold import FoldResult, fold, in_words
 from .folding import SqpReport
 from .pattern.read_options import BORDERS, UNITS_MM, ReadOptions
 from .pattern.reading import DRAWING_SUFFIXES, read_pattern
+from .plan.planning import PlanDescription, check_grooves, plan, write_plan
+from .plan.profile import PAPERS, profile_names, read_profile
+from .plan.source import plan_sources, read_plan_source
+from .plan.writing import PENS, check_place
 from .verify_mesh import verdict, verify_mesh
 from .version import in_words as version_in_words
 
@@ -74,7 +78,20 @@ def add_fold_arguments(parser: argparse.ArgumentParser) -> None:
         "--rulings", action="store_true",
         help="write the rulings (rulings.obj, rulings.svg) and the Gauss image (gauss_image.obj) too",
     )  # fmt: skip
+    parser.add_argument(
+        "--plan", choices=[suffix.removeprefix(".") for suffix in PENS], default=None,
+        help="write the plan of the folded sheet too: plan.svg, plan.dxf or plan.pdf, for a machine or a hand",
+    )  # fmt: skip
+    _add_profile_argument(parser)
     _add_read_arguments(parser)
+
+
+def _add_profile_argument(parser: argparse.ArgumentParser) -> None:
+    default = PlanDescription().profile
+    parser.add_argument(
+        "--profile", default=default, metavar="NAME",
+        help=f"what a plan is for: {', '.join(profile_names())}, or a file *.toml (default {default})",
+    )  # fmt: skip
 
 
 def add_version_argument(parser: argparse.ArgumentParser) -> None:
@@ -156,6 +173,11 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
     try:
         folder = Path(args.out)
         _check_apart(Path(args.pattern), folder)
+        planned = None if args.plan is None else folder / f"plan.{args.plan}"
+        if planned is not None:
+            check_place(planned, [args.pattern])
+        asked = PlanDescription(read_profile(args.profile) if planned else "origami", rulings=args.rulings)
+        check_grooves(asked)
         description = description_of(args)
         check_writable(folder, result_names(args.rulings))
         pattern = read_pattern(args.pattern, read_options_of(args))
@@ -168,6 +190,8 @@ def run_fold(args: argparse.Namespace, stream: TextIO, on_result: OnResult | Non
             source = _source(args, error.where.element or "")
             raise error.in_file(str(source)) if error.where.file is None else error from None
         write_results(result, folder, args.rulings)
+        if planned is not None:
+            write_plan(plan(result, asked), planned, [args.pattern])
         if on_result is not None:
             on_result(result, folder)
     except CurvefoldError as error:
@@ -199,6 +223,68 @@ def run_verify(args: argparse.Namespace, stream: TextIO) -> int:
         for fault in found.faults[1:]:
             print(f"also: {fault}", file=stream)
     return REACHED if found.ok else NOT_REACHED
+
+
+def add_plan_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of ``plan``."""
+    parser.add_argument(
+        "source", metavar="DRAWING|FOLDED.fold|FOLDER",
+        help="a drawing, a folded FOLD file, or a folder of results: of these mountains and valleys are as folded",
+    )  # fmt: skip
+    parser.add_argument(
+        "--out", required=True, metavar="FILE",
+        help=f"the file to write ({', '.join(PENS)}); several pages are several files, or one PDF",
+    )  # fmt: skip
+    _add_profile_argument(parser)
+    parser.add_argument(
+        "--thickness", type=float, default=None, metavar="MM",
+        help="thickness of board: V-grooves as wide as the fold needs (profile board)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--dash", type=_dashes, default=None, metavar="MM,MM",
+        help="dash and gap of all creases, or dash, gap, dot and gap, or none for whole lines "
+        "(default: the profile's)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--tile", choices=tuple(PAPERS), default=None,
+        help="print it in pieces on this paper, with marks to join them",
+    )  # fmt: skip
+    parser.add_argument(
+        "--tabs", type=float, default=None, metavar="MM",
+        help="add tabs of this width where a folder of results has glued borders",
+    )  # fmt: skip
+    parser.add_argument("--rulings", action="store_true", help="draw the rulings of a folder of results")
+    _add_read_arguments(parser)
+
+
+def run_plan(args: argparse.Namespace, stream: TextIO) -> int:
+    """Write the plan of a drawing or a fold; notes and the files' names to ``stream``.
+
+    args: what ``add_plan_arguments`` added. Returns the exit code, raises nothing of ours.
+    """
+    said: tuple[str, ...] = ()
+    try:
+        told = PlanDescription(args.profile, args.thickness, args.dash, args.tile, args.tabs, args.rulings)
+        source = read_plan_source(args.source, read_options_of(args))
+        said = source.notes
+        _print_notes(said, stream)
+        files = write_plan(plan(source, told), args.out, plan_sources(args.source))
+    except CurvefoldError as error:
+        if error.where.file is None and error.where.element is not None:
+            error = error.in_file(str(args.source))
+        return _refuse(error, stream, said)
+    for path in files:
+        print(f"wrote {path}", file=stream)
+    return REACHED
+
+
+def _dashes(text: str) -> tuple[float, ...]:
+    if text == "none":
+        return ()
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no lengths such as 3,1.5, and not 'none'") from None
 
 
 def _refuse(error: CurvefoldError, stream: TextIO, said: Sequence[str] = ()) -> int:
@@ -254,6 +340,9 @@ def main(argv: list[str] | None, stream: TextIO) -> int:
     command = commands.add_parser("verify", help="check whether a folded mesh is paper")
     add_verify_arguments(command)
     command.set_defaults(run=run_verify)
+    command = commands.add_parser("plan", help="write the flat sheet for a machine or a hand: SVG, DXF or PDF")
+    add_plan_arguments(command)
+    command.set_defaults(run=run_plan)
     try:
         with every_word_printable():
             arguments = parser.parse_args(argv)

@@ -41,6 +41,15 @@ def test_fold_render_and_save(main, drawing, tmp_path):
     assert any("curvefold_positions" in mesh for mesh in bpy.data.meshes)
 
 
+def test_a_plan_is_written(main, drawing, tmp_path, capsys):
+    out = tmp_path / "plan.svg"
+    assert main(["plan", str(drawing), "--profile", "plotter", "--out", str(out)]) == 0
+    assert complaint(capsys) == f"wrote {out}"
+    assert 'width="100mm"' in out.read_text(encoding="utf-8")
+    assert main(["plan", str(drawing), "--profile", "ploter", "--out", str(out)]) == 2
+    assert "the nearest known one is 'plotter'" in complaint(capsys)
+
+
 def test_relative_paths_are_relative_to_here(main, drawing, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["fold", "arc.svg", "--out", "out", "--render", "here.png", *QUICK]) == 0

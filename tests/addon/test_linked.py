@@ -45,6 +45,7 @@ NEUTRAL = {
     "animate_picture",
     "back_to_paper",
     "check_paper",
+    "export_plan",
     "fold_drawing",
     "follow",
     "gauss_image_as_object",

@@ -402,6 +402,7 @@ def test_a_bake_can_be_made_and_freed(panels, wording, paper):
 
 def test_drawing_and_advanced_panels_draw(panels, paper):
     assert "sheet" in drawn(panels.DrawingPanel)["properties"]
+    assert "curvefold.export_plan" in drawn(panels.DrawingPanel)["operators"]
     assert {"angle", "resolution"} <= set(drawn(panels.AdvancedPanel)["properties"])
 
 
