@@ -24,8 +24,9 @@ from .pull import Pull, Term
 #: Handles that the flat sheet misses by this part of its longer side ask for the whole of the least fold, those
 #: that it misses by less for as much less: a short drag folds a little.
 _WHOLE = 0.05
-#: The sides are looked at every so many iterations.
-_LOOK_EVERY = 10
+#: The sides are looked at every so many iterations. A point that is flat at so many looks in a row does not only
+#: pass through flat, as all do while a drag begins: pulled sooner, an arc took the other side and came to 39° of 76°.
+_LOOK_EVERY, _LOOKS = 5, 4
 #: Points that rest flat are asked for so much more fold each time, degrees, and so many times harder, at most so
 #: often.
 _FAINT, _HARDER, _MOST_HARDER = 2.0, 8.0, 8
@@ -61,7 +62,7 @@ class LeastFold(Pull):
         """The sheet is flat once more."""
         self._awake = False
         self._times = np.zeros(len(self._points), dtype=np.int64)
-        self._left = np.zeros(len(self._points), dtype=bool)  # flat at the last look
+        self._looks = np.zeros(len(self._points), dtype=np.int64)  # how often in a row they were flat
 
     def give_way(self) -> bool:
         """Ask only for faint folds until handles are told anew: they are missed. Whether that is new."""
@@ -95,12 +96,10 @@ class LeastFold(Pull):
             return False
         sided = self._look(x)
         if self._degrees * self._part < _FAINT:
-            self._left = np.zeros_like(self._left)
+            self._looks = np.zeros_like(self._looks)
             return sided
-        flat = self._flat(x)
-        # Twice in a row: a point that passes through flat folds by itself.
-        staying = flat & self._left & (self._times < _MOST_HARDER)
-        self._left = flat
+        self._looks = np.where(self._flat(x), self._looks + 1, 0)
+        staying = (self._looks >= _LOOKS) & (self._times < _MOST_HARDER)
         self._times = self._times + staying
         return sided or bool(staying.any())
 
