@@ -25,7 +25,7 @@ from .pull import Pull, Term
 #: that it misses by less for as much less: a short drag folds a little.
 _WHOLE = 0.05
 #: The sides are looked at every so many iterations. A point that is flat at so many looks in a row does not only
-#: pass through flat, as all do while a drag begins: pulled sooner, an arc took the other side and came to 39° of 76°.
+#: pass through flat, as all do while a drag begins: pulled sooner, an arc took the other side, 39° instead of 76°.
 _LOOK_EVERY, _LOOKS = 5, 4
 #: Points that rest flat are asked for so much more fold each time, degrees, and so many times harder, at most so
 #: often.

@@ -125,8 +125,8 @@ def test_a_drag_folds_on_its_way_what_it_left_unfolded(drawings: ModuleType) -> 
     assert model.status is solver.Status.RUNNING
     # A point that the drag brings to flat folds again while it goes on.
     assert left[0] > 0.1
-    assert min(left[4:]) == 0
-    assert max(left[4:]) <= 1 / solver.measure(net, model.positions).asked.sum() * 3
+    assert min(left[5:]) == 0
+    assert max(left[5:]) <= 1 / solver.measure(net, model.positions).asked.sum() * 3
 
 
 def test_handles_and_angle_work_together(drawings: ModuleType) -> None:
