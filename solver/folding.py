@@ -39,8 +39,9 @@ from .optimize.term import ResidualTerm
 #: Softness of the constraints, 1/energy: until the shape is still, and in the end; between them it falls by this
 #: factor an iteration.
 EPS_FIRST, EPS_LAST, _EPS_FALL = 1e-2, 1e-5, 0.5
-#: Still: over this many iterations the merit falls by less than this part of itself (or by _NOTHING).
-_STILL_OVER, _STILL_PART, _NOTHING = 5, 1e-3, 1e-7
+#: Still: over this many iterations the merit falls by less than this part of itself (or by _NOTHING); over more of
+#: them where a handle is off its target: in the corpus, what looked still after five had often yet to arrive.
+_STILL_OVER, _STILL_IF_MISSED, _STILL_PART, _NOTHING = 5, 10, 1e-3, 1e-7
 #: A stage ends after so many iterations even if it is not still: the rest is creep (method, section 3).
 _STAGE_MOST = 60
 #: The offset lifts no vertex by more than this, net units.
@@ -430,9 +431,11 @@ class FoldModel:
             self._eps = max(EPS_LAST, _EPS_FALL * self._eps)
             return
         self._merits.append(step.merit)
-        recent = self._merits[-_STILL_OVER:]
+        missed = self._handles.gaps(self._state.x).max(initial=0.0) > 0.5 * REACHED
+        window = _STILL_IF_MISSED if missed else _STILL_OVER
+        recent = self._merits[-window:]
         fall = recent[0] - recent[-1]
-        still = len(recent) == _STILL_OVER and fall < max(_STILL_PART * recent[-1], _NOTHING)
+        still = len(recent) == window and fall < max(_STILL_PART * recent[-1], _NOTHING)
         if not still and len(self._merits) < _STAGE_MOST:
             return
         self._merits = []

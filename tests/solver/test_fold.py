@@ -162,7 +162,7 @@ def test_what_is_stuck_on_the_way_of_its_handles_gets_there_in_another(monkeypat
     assert result.status is solver.Outcome.FOLDED
     monkeypatch.setattr(fold_module, "_WORTH_ANOTHER_WAY", ())
     stuck = solver.fold(drawing.pattern, told)
-    assert stuck.status is solver.Outcome.OUT_OF_REACH
+    assert not stuck.status.ok
     assert stuck.iterations < result.iterations
 
 
