@@ -35,13 +35,14 @@ from .net.render_map import RenderMap
 from .net.resolution import Resolution, choose_resolution
 from .pattern.crease_pattern import Crease, CreasePattern
 from .pattern.read_options import ReadOptions
-from .pattern.reading import DRAWING_SUFFIXES, read_pattern, read_patterns
+from .pattern.reading import DRAWING_FORMATS, DRAWING_SUFFIXES, read_pattern, read_patterns
 from .rulings import RulingKind, Rulings, rulings
 from .sheet_mesh import SheetMesh
 from .verify import Fault, Verification, verify
 from .verify_mesh import verify_mesh
 
 __all__ = [
+    "DRAWING_FORMATS",
     "DRAWING_SUFFIXES",
     "Amount",
     "Angle",
