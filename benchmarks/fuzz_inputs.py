@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 import solver
+from benchmarks.fuzz_dxf import made_dxf
 from benchmarks.fuzz_run import Door
 from solver.files.fold_format import fold_text
 from solver.pattern.reading import READERS
@@ -405,8 +406,13 @@ def _door(name: str, make: Callable[[Random], bytes], use: Callable[[bytes, Path
     return Door(make, use, (solver.CurvefoldError,), frozenset({name}))
 
 
+def _dxf(rng: Random) -> bytes:
+    data = made_dxf(rng)
+    return spoilt(rng, data) if rng.random() < 0.5 else data
+
+
 #: Input for every reader of drawings.
-MAKERS = {".svg": _svg, ".svgz": _svgz, ".fold": made_fold}
+MAKERS = {".svg": _svg, ".svgz": _svgz, ".fold": made_fold, ".dxf": _dxf}
 DOORS = {
     **{suffix[1:]: _door("drawing", MAKERS[suffix], _read_drawing(suffix)) for suffix in READERS},
     "handles": _door("handles", made_handles, _read_handles),

@@ -12,13 +12,11 @@ from .fold_file_frames import choose_frame, parse_fold
 from .fold_file_graph import edge_graph
 from .fold_file_strokes import lines_of
 from .read_options import ReadOptions
+from .sizes import unit_of_small
 from .stroke import Lines
 
 #: Millimetres in one frame_unit (FOLD 1.2); "unit" and what is not listed here say nothing.
 _UNIT_MM = {"in": 25.4, "pt": 25.4 / 72, "m": 1000.0, "cm": 10.0, "mm": 1.0, "um": 1e-3, "nm": 1e-6}
-#: Many programs draw on a square of one unit, which nobody means to be a millimetre. A sheet below the first size,
-#: in units that say nothing, has units of the second, mm.
-_SMALL, _UNIT_OF_SMALL = 10.0, 100.0
 
 
 def _lines(data: bytes | str, _options: ReadOptions) -> Lines:
@@ -28,9 +26,9 @@ def _lines(data: bytes | str, _options: ReadOptions) -> Lines:
     notes = [*frame.notes, *graph.notes]
     unit = frame.get("frame_unit")
     unit_mm = _UNIT_MM.get(unit) if isinstance(unit, str) else None
-    if unit_mm is None and graph.size < _SMALL:
-        unit_mm = _UNIT_OF_SMALL
-        notes.append(f"the file gives no unit, so that one is taken for {unit_mm:g} mm")
+    if unit_mm is None:
+        unit_mm, said = unit_of_small(graph.size)
+        notes += said
     return lines_of(graph, unit_mm, tuple(notes))
 
 

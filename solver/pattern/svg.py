@@ -11,15 +11,11 @@ from dataclasses import replace
 
 from .drawing_format import DrawingFormat
 from .read_options import ReadOptions
+from .sizes import NO_SIZE
 from .stroke import Lines
 from .svg_strokes import lines_of
 from .svg_walk import read_drawing
 from .svg_xml import parse_svg_tree
-
-#: What is said of a drawing whose width and height are missing, in pixels, or in percent.
-NO_SIZE = (
-    "the file gives no physical size: one unit is taken for 1 mm (choose another unit or scale when reading it)"
-)
 
 
 def _lines(data: bytes | str, options: ReadOptions) -> Lines:

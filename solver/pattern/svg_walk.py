@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import PatternError, ReadError
 from .meaning import MAX_WORDS
-from .segments import MAX_POINTS, Subpath
+from .segments import MAX_COORDINATE, MAX_POINTS, Subpath
 from .svg_bounds import exact_box
 from .svg_css import MAX_PROPERTY, MEASURES, Stylesheet, css_path
 from .svg_shapes import SHAPES, shape_subpaths
@@ -31,8 +31,6 @@ from .svg_xml import MAX_DEPTH, Node
 
 #: Elements drawn, those repeated by <use> counted each time.
 MAX_ELEMENTS = 50_000
-#: Larger numbers cannot be squared and subtracted without losing the drawing.
-MAX_COORDINATE = 1e12
 #: What a browser assumes of an image without any size (CSS 2.1, section 10.3.2).
 _DEFAULT_VIEWPORT = (300.0, 150.0)
 
