@@ -6,16 +6,18 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ..errors import CurvefoldError, PatternError, ReadError
+from .cp import CP
 from .crease_pattern import CreasePattern
 from .drawing_format import DrawingFormat
 from .dxf import DXF
 from .fold_file import FOLD
+from .opx import OPX
 from .read_options import ReadOptions
 from .svg import SVG
 
 #: Every format that is read. A new one is a module that makes a DrawingFormat, and one entry here: commands,
 #: dialogs, dropped files, batches and help texts follow.
-FORMATS: tuple[DrawingFormat, ...] = (SVG, FOLD, DXF)
+FORMATS: tuple[DrawingFormat, ...] = (SVG, FOLD, DXF, CP, OPX)
 #: Suffix -> reader of all sheets of a file.
 READERS: dict[str, Callable[[str | Path, ReadOptions], tuple[CreasePattern, ...]]] = {
     suffix: one.read for one in FORMATS for suffix in one.suffixes

@@ -12,6 +12,7 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import PatternError, ReadError
 from .meaning import MAX_WORDS
+from .safe_xml import MAX_DEPTH
 from .segments import MAX_COORDINATE, MAX_POINTS, Subpath
 from .svg_bounds import exact_box
 from .svg_css import MAX_PROPERTY, MEASURES, Stylesheet, css_path
@@ -27,7 +28,7 @@ from .svg_transforms import (
     parse_transform,
 )
 from .svg_values import MM_PER_PIXEL, UNKNOWN_COLOUR, Colour, Length, SvgValueError, parse_length, parse_numbers
-from .svg_xml import MAX_DEPTH, Node
+from .svg_xml import Node
 
 #: Elements drawn, those repeated by <use> counted each time.
 MAX_ELEMENTS = 50_000

@@ -6,6 +6,7 @@ import json
 import bpy
 import pytest
 from dxf_files import border, entity, r12
+from typed_files import SQUARE, cp, opx
 
 CREASE = entity("ARC", (10, 50), (20, -20), (40, 80), (50, 45), (51, 135), (62, 1))
 
@@ -38,3 +39,17 @@ def test_batch(extension, from_cad, tmp_path):
         [row] = csv.DictReader(stream)
     report = json.loads((out / row["folder"] / "report.json").read_text())
     assert report
+
+
+@pytest.mark.parametrize(("suffix", "write"), [(".cp", cp), (".opx", opx)])
+def test_formats_of_origami(suffix, write, tmp_path):
+    path = tmp_path / f"crane{suffix}"
+    path.write_bytes(write([*SQUARE, (2, -200, -100, 200, -100), (3, -200, 0, 200, 50)]))
+    bpy.ops.curvefold.import_drawing(filepath=str(path))
+    sheet = next(item for item in bpy.data.objects if item.curvefold.role == "SHEET")
+    assert sheet.name.startswith("crane")
+    assert [child.curvefold.role for child in sheet.children] == ["CREASE", "CREASE"]
+    bpy.ops.curvefold.fold_drawing(filepath=str(path), resolution=8, angle=0.3)
+    assert (
+        any(item.curvefold.role == "PAPER" for item in bpy.data.objects) or bpy.context.active_object.type == "MESH"
+    )
