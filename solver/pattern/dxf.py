@@ -11,9 +11,10 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from ..dxf_library import dxf_library
-from ..errors import CurvefoldError, ReadError
+from ..errors import ReadError
 from .drawing_format import DrawingFormat
 from .drawn_lines import lines_of_drawn
+from .dxf_text import complete, with_classes
 from .dxf_walk import walk
 from .read_options import ReadOptions
 from .sizes import NO_SIZE
@@ -39,7 +40,7 @@ _UNIT_MM = {
     16: 1e5,
 }
 #: Pairs of a group code and a value, of which each takes a line of text, or some bytes of a binary file at least.
-MAX_TAGS = 2_000_000
+MAX_TAGS = 1_000_000
 _LEAST_BYTES = 8
 _BINARY = b"AutoCAD Binary DXF\r\n\x1a\x00"
 _DRAWING = b"AC10"
@@ -63,6 +64,8 @@ def _check(data: bytes) -> None:
         raise ReadError("the file is empty")
     if data.startswith(_DRAWING):
         raise ReadError("this is a DWG file and no DXF file: save the drawing as DXF")
+    if not data.startswith(_BINARY) and b"SECTION" not in data:
+        raise ReadError("this is not a readable DXF file (there is no section in it)")
     tags = len(data) // _LEAST_BYTES if data.startswith(_BINARY) else max(data.count(b"\n"), data.count(b"\r")) // 2
     if tags > MAX_TAGS:
         raise ReadError(f"the file has more than {MAX_TAGS:,} entries, and more is not read")
@@ -75,14 +78,16 @@ def _document(data: bytes) -> tuple[Any, tuple[str, ...]]:
         if data.startswith(_BINARY):
             loader = library.lldxf.tagger.binary_tags_loader(data)
             return library.document.Drawing.load(loader), ()
-        document, auditor = library.recover.read(io.BytesIO(data))
-    except CurvefoldError:
-        raise
+        data, notes = complete(data)
+        try:
+            document, auditor = library.recover.read(io.BytesIO(data))
+        except library.DXFStructureError:
+            document, auditor = library.recover.read(io.BytesIO(with_classes(data)))
     except Exception as error:
         # A damaged file makes the library fail in all ways that Python knows.
         reason = " ".join(str(error).split())[:120] or type(error).__name__
         raise ReadError(f"this is not a readable DXF file ({reason})") from error
-    return document, tuple(_faults(auditor))
+    return document, (*notes, *_faults(auditor))
 
 
 def _faults(auditor: Any) -> Iterator[str]:

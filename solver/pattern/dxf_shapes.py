@@ -62,8 +62,8 @@ def _round(entity: Any, matrix: FloatArray, begin: float, sweep: float) -> Subpa
 
 
 def _ellipse(entity: Any, matrix: FloatArray) -> Iterator[Subpath]:
-    major = np.array(entity.dxf.major_axis.xyz)
-    normal = np.array(entity.dxf.extrusion.xyz)
+    major = np.array(tuple(entity.dxf.major_axis))
+    normal = np.array(tuple(entity.dxf.extrusion))
     length = float(np.linalg.norm(normal))
     normal = normal / length if length > 0.0 else np.array([0.0, 0.0, 1.0])
     minor = float(entity.dxf.ratio) * np.cross(normal, major)
@@ -95,7 +95,7 @@ def _polyline(entity: Any, matrix: FloatArray) -> Iterator[Subpath]:
     if not (entity.is_2d_polyline or entity.is_3d_polyline):
         raise PatternError("it is a mesh of faces and no line")
     vertices = [one.dxf for one in entity.vertices if not one.dxf.get("flags", 0) & _FRAME_VERTEX]
-    points = np.array([vertex.location.xyz for vertex in vertices], dtype=np.float64).reshape(-1, 3)
+    points = np.array([tuple(vertex.location) for vertex in vertices], dtype=np.float64).reshape(-1, 3)
     if entity.is_3d_polyline:
         yield from _bulged(_seen(points, matrix), np.zeros(len(points)), 0.0, bool(entity.is_closed), np.eye(4))
         return
@@ -139,7 +139,7 @@ def _spline(entity: Any, matrix: FloatArray) -> Iterator[Subpath]:
         if len(entity.fit_points) < 2:
             raise PatternError("it is a spline without points")
         through = dxf_library().math.fit_points_to_cad_cv(entity.fit_points, _end_tangents(entity))
-        controls = np.array([point.xyz for point in through.control_points])
+        controls = np.array([tuple(point) for point in through.control_points])
         knots, weights, degree = np.array(through.knots()), np.array(through.weights()), through.degree
     seen = _seen(controls, matrix)
     if not len(weights):

@@ -14,7 +14,7 @@ import ezdxf
 import numpy as np
 import pytest
 import shapely
-from dxf_files import block, border, entity, insert, layer, line, linetype, r12, text
+from dxf_files import CORNERS, block, border, entity, insert, layer, line, linetype, r12, text
 from ezdxf import colors
 from ezdxf.math import BSpline
 
@@ -391,10 +391,10 @@ def test_dimensions_and_hatches_are_told() -> None:
         (b"<svg/>", "not a readable DXF file"),
         (b"AutoCAD Binary DXF\r\n\x1a\x00\x00SEC", "not a readable DXF file"),
         (b"\x89PNG\r\n\x1a\n" + bytes(range(256)), "not a readable DXF file"),
-        (text([(0, "EOF")]), "no line"),
+        (text([(0, "EOF")]), "no section in it"),
         (r12(), "no line"),
         (r12(line((1, 1), (1, 1))), "no size"),
-        (b"0\n" * 4_000_004, "2,000,000 entries"),
+        (b"SECTION\n" * 2_000_004, "1,000,000 entries"),
         (r12(insert("a", (0, 0)), blocks=block("a", insert("a", (0, 0)))), "circle"),
     ],
 )
@@ -423,6 +423,64 @@ def test_a_damaged_file_gives_what_is_left_of_it() -> None:
     # The sections after the entities are lost, as when a disk was full.
     cut = whole[: whole.index(b"OBJECTS")]
     assert len(read(cut).creases) == 1
+
+
+def outlined(header: str = "AC1014") -> bytes:
+    """As a drawing program writes it: few tables, entities with their classes, a z where there is none."""
+
+    def common(name: str, layer_name: str, handle: str) -> list[tuple[int, Any]]:
+        return [(5, handle), (100, "AcDbEntity"), (8, layer_name), (62, 7), (100, name)]
+
+    content: list[tuple[int, Any]] = []
+    for k, (a, b) in enumerate(zip(CORNERS, (*CORNERS[1:], CORNERS[0]), strict=True)):
+        content += [(0, "LINE"), *common("AcDbLine", "Layer 1", f"10{k}")]
+        content += [(10, a[0]), (20, a[1]), (30, 0.0), (11, b[0]), (21, b[1]), (31, 0.0)]
+    content += [
+        (0, "SPLINE"),
+        *common("AcDbSpline", "Mountain", "1A0"),
+        (70, 8),
+        (71, 3),
+        (72, 8),
+        (73, 4),
+        (74, 0),
+    ]
+    content += [(40, 0.0)] * 4 + [(40, 1.0)] * 4
+    for x, y in ((0, 30), (30, 60), (60, 0), (100, 40)):
+        content += [(10, x), (20, y), (30, 0.0)]
+    content += [(0, "LWPOLYLINE"), *common("AcDbPolyline", "Valley", "1A1"), (90, 3), (70, 0)]
+    for x, y in ((0, 60), (50, 70), (100, 60)):
+        content += [(10, x), (20, y), (30, 0.0)]
+    top = [(0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, header), (0, "ENDSEC")]
+    sections = [*(top if header else []), (0, "SECTION"), (2, "ENTITIES"), *content, (0, "ENDSEC"), (0, "EOF")]
+    return text(sections)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        outlined(),
+        outlined("AC1009"),
+        outlined(""),
+        b"\xef\xbb\xbf" + outlined(),
+        b"999\na comment\n" + outlined(""),
+        outlined().replace(b"\n", b"\r\n"),
+        outlined().replace(b"\n", b"\r"),
+        outlined().removesuffix(b"  0\nEOF\n"),
+        outlined("AC1009").replace(b"100\nAcDbEntity\n", b"").replace(b"100\nAcDbPolyline\n", b""),
+    ],
+    ids=["whole", "too old", "no header", "mark", "comment", "Windows", "old Mac", "no end", "no classes"],
+)
+def test_what_programs_leave_out(data: bytes) -> None:
+    pattern = read(data)
+    assert letters(pattern) == "MV"
+    assert not any("damaged" in note or "too early" in note for note in pattern.notes)
+
+
+def test_a_file_that_ends_too_early_loses_its_last_line() -> None:
+    whole = outlined()
+    pattern = read(whole[: whole.rindex(b"20\n60") + 4])
+    assert letters(pattern) == "M"
+    assert any("ends too early" in note for note in pattern.notes)
 
 
 def test_numbers_that_are_none_leave_their_line_out() -> None:
