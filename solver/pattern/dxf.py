@@ -7,7 +7,7 @@ through entities and blocks, ``dxf_shapes`` makes outlines of them, ``dxf_looks`
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Any
 
 from ..dxf_library import dxf_library
@@ -80,22 +80,30 @@ def _document(data: bytes) -> tuple[Any, tuple[str, ...]]:
             return library.document.Drawing.load(loader), ()
         data, notes = complete(data)
         try:
-            document, auditor = library.recover.read(io.BytesIO(data))
+            document, faults = _recovered(data)
         except library.DXFStructureError:
-            document, auditor = library.recover.read(io.BytesIO(with_classes(data)))
+            document, faults = _recovered(with_classes(data))
     except Exception as error:
         # A damaged file makes the library fail in all ways that Python knows.
         reason = " ".join(str(error).split())[:120] or type(error).__name__
         raise ReadError(f"this is not a readable DXF file ({reason})") from error
-    return document, (*notes, *_faults(auditor))
+    if faults:
+        count = "1 fault" if len(faults) == 1 else f"{len(faults):,} faults"
+        notes = (*notes, f"the file is damaged, {count} mended: {' '.join(faults[0].split())[:120]}")
+    return document, notes
 
 
-def _faults(auditor: Any) -> Iterator[str]:
-    """What the library says about a damaged file, a note for what it mended and one for what it could not."""
-    for found, fate in ((auditor.fixes, "mended"), (auditor.errors, "left as they are")):
-        if found:
-            count = "1 fault" if len(found) == 1 else f"{len(found):,} faults"
-            yield f"the file is damaged, {count} {fate}: {' '.join(found[0].message.split())[:120]}"
+def _recovered(data: bytes) -> tuple[Any, list[str]]:
+    """The drawing in a text file, and what was mended in it.
+
+    As ``ezdxf.recover.read`` does it, without the audit that follows there: it takes unknown line types away, which
+    say something here, and looks for blocks in blocks by ways that are as many as 2 to the power of the blocks.
+    """
+    library = dxf_library()
+    tool = library.recover.Recover.run(io.BytesIO(data))
+    document = library.document.Drawing()
+    document._load_section_dict(tool.section_dict)
+    return document, [message for _, message in (*tool.fixes, *tool.errors)]
 
 
 def _entities(document: Any) -> tuple[Iterable[Any], tuple[str, ...]]:

@@ -81,15 +81,16 @@ class _Walker:
                     f"the drawing has more than {MAX_ENTITIES:,} entities, those of its blocks counted"
                 )
             kind = entity.dxftype()
+            if kind in _SILENT:
+                continue
+            if kind != "INSERT" and kind not in KINDS:
+                self._left_out[kind[:_NAME_LENGTH]] += 1
+                continue
             look = self._looks.of(entity, place.look)
             if entity.dxf.get("invisible", 0):
                 self._hidden["invisible"] += 1
             elif kind == "INSERT":
                 waiting.append(self._referred(entity, place, look))
-            elif kind in _SILENT:
-                continue
-            elif kind not in KINDS:
-                self._left_out[kind] += 1
             elif self._looks.frozen(look):
                 self._hidden[_on_layer(look, "frozen")] += 1
             elif self._looks.off(look):

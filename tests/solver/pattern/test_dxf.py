@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 import shapely
 from dxf_files import CORNERS, block, border, entity, insert, layer, line, linetype, r12, text
-from ezdxf import colors
+from ezdxf import colors, recover
 from ezdxf.math import BSpline
 
 import solver
@@ -223,12 +223,13 @@ def test_what_is_no_line_is_told() -> None:
             line((0, 30), (100, 40)),
             entity("TEXT", (10, 5), (20, 5), (40, 2), (1, "fold here")),
             entity("POINT", (10, 5), (20, 5)),
+            entity("NOVELTY", (10, 5)),
             entity("POINT", (10, 6), (20, 5)),
             insert("lost", (0, 0)),
         )
     )
-    assert any("1 TEXT, 2 POINT" in note for note in pattern.notes)
-    assert any("1 fault mended" in note and "INSERT" in note for note in pattern.notes)
+    assert any("1 TEXT, 2 POINT, 1 NOVELTY" in note for note in pattern.notes)
+    assert "1 INSERT left out: the file has no block 'lost'" in pattern.notes
 
 
 # ---- by ezdxf
@@ -481,6 +482,36 @@ def test_a_file_that_ends_too_early_loses_its_last_line() -> None:
     pattern = read(whole[: whole.rindex(b"20\n60") + 4])
     assert letters(pattern) == "M"
     assert any("ends too early" in note for note in pattern.notes)
+
+
+def test_faults_that_draw_nothing_are_not_told() -> None:
+    """Well-known programs write dictionaries whose entries are not there."""
+    whole = written(lambda _, model: model.add_line((0, 30), (100, 40)))
+    begin = whole.index(b"AcDbDictionary\n") + len(b"AcDbDictionary\n")
+    wrong = whole[:begin] + b"  3\nSTANDARD\n350\nFFFFF\n" + whole[begin:]
+    _, auditor = recover.read(io.BytesIO(wrong))
+    assert auditor.fixes
+    assert read(wrong).notes == read(whole).notes
+
+
+def test_a_line_type_that_the_file_does_not_describe() -> None:
+    pattern = read(
+        r12(border(), line((0, 30), (100, 40), (6, "DASHDOT")), line((0, 50), (100, 60), (6, "HIDDEN2")))
+    )
+    assert [crease.assignment for crease in pattern.creases] == ["M", "V"]
+
+
+def test_blocks_that_refer_to_all_later_ones() -> None:
+    """The ways through them are as many as 2 to the power of 40."""
+    count = 40
+    blocks = [
+        tag
+        for k in range(count)
+        for tag in block(f"b{k}", *(insert(f"b{j}", (0, 0)) for j in range(k + 1, count)), line((0, 0), (1, 1)))
+    ]
+    assert len(read(r12(border(), line((0, 30), (100, 40)), blocks=blocks)).creases) == 1
+    with pytest.raises(solver.PatternError, match="more than"):
+        read(r12(border(), insert("b0", (0, 0)), blocks=blocks))
 
 
 def test_numbers_that_are_none_leave_their_line_out() -> None:
