@@ -13,7 +13,9 @@ from typing import Any
 import numpy as np
 
 import solver
+from benchmarks.fuzz_dxf import made_dxf
 from benchmarks.fuzz_run import Door
+from benchmarks.fuzz_typed import made_cp, made_opx
 from solver.files.fold_format import fold_text
 from solver.pattern.reading import READERS
 
@@ -405,8 +407,23 @@ def _door(name: str, make: Callable[[Random], bytes], use: Callable[[bytes, Path
     return Door(make, use, (solver.CurvefoldError,), frozenset({name}))
 
 
+def _often_spoilt(make: Callable[[Random], bytes]) -> Callable[[Random], bytes]:
+    def made(rng: Random) -> bytes:
+        data = make(rng)
+        return spoilt(rng, data) if rng.random() < 0.4 else data
+
+    return made
+
+
 #: Input for every reader of drawings.
-MAKERS = {".svg": _svg, ".svgz": _svgz, ".fold": made_fold}
+MAKERS = {
+    ".svg": _svg,
+    ".svgz": _svgz,
+    ".fold": made_fold,
+    ".dxf": _often_spoilt(made_dxf),
+    ".cp": _often_spoilt(made_cp),
+    ".opx": _often_spoilt(made_opx),
+}
 DOORS = {
     **{suffix[1:]: _door("drawing", MAKERS[suffix], _read_drawing(suffix)) for suffix in READERS},
     "handles": _door("handles", made_handles, _read_handles),

@@ -82,12 +82,43 @@ def fold_graph(count: int) -> str:
     )
 
 
+def cad_lines(count: int) -> str:
+    """A DXF file of short lines in rows, on layers that say what they are."""
+    corners = [(0.0, 0.0), (SIDE, 0.0), (SIDE, SIDE), (0.0, SIDE)]
+    sides = [("cut", *a, *b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
+    folds = [
+        (("mountain", "valley")[k % 2], x, y, x + step, y + 0.3 * step)
+        for k, (x, y, step) in enumerate(_cells(count - len(sides)))
+    ]
+    entities = [
+        f"0\nLINE\n8\n{layer}\n10\n{x0:.3f}\n20\n{y0:.3f}\n11\n{x1:.3f}\n21\n{y1:.3f}\n"
+        for layer, x0, y0, x1, y1 in (*sides, *folds)
+    ]
+    return f"0\nSECTION\n2\nENTITIES\n{''.join(entities)}0\nENDSEC\n0\nEOF\n"
+
+
+def typed_grid(count: int) -> str:
+    """A CP file of a grid of at most ``count`` lines, each from one crossing to the next."""
+    cells = int((np.sqrt(1 + 2 * count) - 1) / 2)
+    cell = SIDE / cells
+    rows = []
+    for i in range(cells + 1):
+        for j in range(cells):
+            rim = i in (0, cells)
+            a, b, c = cell * i, cell * j, cell * (j + 1)
+            rows += [f"{1 if rim else 2} {b:.4f} {a:.4f} {c:.4f} {a:.4f}"]
+            rows += [f"{1 if rim else 3} {a:.4f} {b:.4f} {a:.4f} {c:.4f}"]
+    return "\n".join(rows) + "\n"
+
+
 #: Suffix and maker by what the drawing is made of.
 LARGE: dict[str, tuple[str, Callable[[int], str]]] = {
     "lines with classes": (".svg", class_lines),
     "paths with styles": (".svg", style_paths),
     "curves of 40 lines": (".svg", exploded_curves),
     "edges of a FOLD file": (".fold", fold_graph),
+    "lines of a DXF file": (".dxf", cad_lines),
+    "lines of a CP file": (".cp", typed_grid),
 }
 
 

@@ -1,4 +1,4 @@
-"""SVG and FOLD files dropped into a 3D viewport."""
+"""Drawings dropped into a 3D viewport."""
 
 import bpy
 

@@ -39,6 +39,8 @@ PLATFORMS = {
 }
 #: Which libraries a platform gets, where not those of bundled.txt.
 OTHER_REQUIREMENTS = {"windows-arm64": "bundled_windows_arm64.txt"}
+#: Libraries of which the pure wheel is taken everywhere. There are faster ones for each platform, of 5 MB each.
+PURE = frozenset({"ezdxf", "fonttools"})
 
 LIST = re.compile(r"^wheels = \[.*?^\]$", re.MULTILINE | re.DOTALL)
 
@@ -73,7 +75,11 @@ def find(name: str, version: str, python: str, platform: str) -> Path | None:
         pythons, abi, tags = path.stem.split("-")[2:]
         if abi == "none" and tags == "any":
             return path
-        if pythons == f"cp{python}" and any(tag in PLATFORMS[platform] for tag in tags.split(".")):
+        if (
+            name not in PURE
+            and pythons == f"cp{python}"
+            and any(tag in PLATFORMS[platform] for tag in tags.split("."))
+        ):
             return path
     return None
 
@@ -81,9 +87,13 @@ def find(name: str, version: str, python: str, platform: str) -> Path | None:
 def fetch(name: str, version: str, python: str, platform: str) -> Path:
     """Downloads one wheel into the cache."""
     command = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
-    command += ["--only-binary=:all:", "--implementation", "cp", "--python-version", python]
-    for tag in PLATFORMS[platform]:
-        command += ["--platform", tag]
+    command += ["--only-binary=:all:", "--python-version", python]
+    if name in PURE:
+        command += ["--implementation", "py", "--abi", "none", "--platform", "any"]
+    else:
+        command += ["--implementation", "cp"]
+        for tag in PLATFORMS[platform]:
+            command += ["--platform", tag]
     # In a folder of its own first: an interrupted download must not look like a wheel.
     partial = bundled_folder() / "partial"
     shutil.rmtree(partial, ignore_errors=True)

@@ -36,7 +36,7 @@ from .net.render_map import RenderMap
 from .net.resolution import Resolution, choose_resolution
 from .pattern.crease_pattern import Crease, CreasePattern
 from .pattern.read_options import ReadOptions
-from .pattern.reading import DRAWING_SUFFIXES, read_pattern, read_patterns
+from .pattern.reading import DRAWING_FORMATS, DRAWING_SUFFIXES, read_pattern, read_patterns
 from .plan.planning import PlanDescription, PlanResult, plan, write_plan
 from .plan.profile import profile_names
 from .plan.source import PlanSource, read_plan_source
@@ -47,6 +47,7 @@ from .verify import Fault, Verification, verify
 from .verify_mesh import verify_mesh
 
 __all__ = [
+    "DRAWING_FORMATS",
     "DRAWING_SUFFIXES",
     "Amount",
     "Angle",

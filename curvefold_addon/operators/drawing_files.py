@@ -14,6 +14,8 @@ from .. import wording
 FILTER = ";".join(f"*{suffix}" for suffix in solver.DRAWING_SUFFIXES)
 #: For menus: ".svg, .fold".
 SUFFIXES = ", ".join(solver.DRAWING_SUFFIXES)
+#: For descriptions: "SVG or FOLD".
+FORMATS = " or ".join(filter(None, (", ".join(solver.DRAWING_FORMATS[:-1]), solver.DRAWING_FORMATS[-1])))
 
 FROM_FILE = "FILE"
 

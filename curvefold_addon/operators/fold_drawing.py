@@ -12,14 +12,15 @@ from ..bridge import drawing, linked, mesh, papers
 from ..drawing_context import select_only
 from ..resolution_property import resolution_property, told
 from ..waiting import Waiting
-from .drawing_files import READING, SUFFIXES, DrawingFiles
+from .drawing_files import FORMATS, READING, SUFFIXES, DrawingFiles
 
 
 class FoldDrawing(DrawingFiles, bpy.types.Operator):
-    """Fold the crease patterns in SVG or FOLD files and add the papers"""
+    """Folds the crease patterns in drawings and adds the papers."""
 
     bl_idname = "curvefold.fold_drawing"
     bl_label = "Fold Drawing"
+    bl_description = f"Fold the crease patterns in {FORMATS} files and add the papers"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
     choices: ClassVar[tuple[str, ...]] = (*READING, "angle", "resolution")

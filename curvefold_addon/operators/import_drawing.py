@@ -9,14 +9,15 @@ from ... import solver
 from .. import later_work, looking
 from ..bridge import drawing, linked
 from ..drawing_context import in_object_mode, select_only
-from .drawing_files import SUFFIXES, DrawingFiles
+from .drawing_files import FORMATS, SUFFIXES, DrawingFiles
 
 
 class ImportDrawing(DrawingFiles, bpy.types.Operator):
-    """Add the crease patterns in SVG or FOLD files as sheets with creases"""
+    """Adds the crease patterns in drawings as sheets with creases."""
 
     bl_idname = "curvefold.import_drawing"
     bl_label = "Import Crease Pattern"
+    bl_description = f"Add the crease patterns in {FORMATS} files as sheets with creases"
     bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
 
     @classmethod

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import FloatArray, IntArray
 from ..errors import PatternError, ReadError
-from .svg_walk import MAX_COORDINATE
+from .segments import MAX_COORDINATE
 
 #: FOLD's letters (FOLD 1.2, edges_assignment), the one that counts first where an edge is given twice.
 LETTERS = "BCMVUJF"

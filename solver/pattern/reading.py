@@ -6,19 +6,26 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ..errors import CurvefoldError, PatternError, ReadError
+from .cp import CP
 from .crease_pattern import CreasePattern
-from .fold_file import read_fold
+from .drawing_format import DrawingFormat
+from .dxf import DXF
+from .fold_file import FOLD
+from .opx import OPX
 from .read_options import ReadOptions
-from .svg import read_svg
+from .svg import SVG
 
-#: Suffix -> reader of all sheets of a file. A new format is one line here.
+#: Every format that is read. A new one is a module that makes a DrawingFormat, and one entry here: commands,
+#: dialogs, dropped files, batches and help texts follow.
+FORMATS: tuple[DrawingFormat, ...] = (SVG, FOLD, DXF, CP, OPX)
+#: Suffix -> reader of all sheets of a file.
 READERS: dict[str, Callable[[str | Path, ReadOptions], tuple[CreasePattern, ...]]] = {
-    ".svg": read_svg,
-    ".svgz": read_svg,
-    ".fold": read_fold,
+    suffix: one.read for one in FORMATS for suffix in one.suffixes
 }
 #: The suffixes of all drawings that are read, in small letters.
 DRAWING_SUFFIXES: tuple[str, ...] = tuple(READERS)
+#: The names of their formats, for dialogs and help.
+DRAWING_FORMATS: tuple[str, ...] = tuple(one.name for one in FORMATS)
 
 
 def read_patterns(path: str | Path, options: ReadOptions | None = None) -> tuple[CreasePattern, ...]:

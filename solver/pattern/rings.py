@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..arrays import FloatArray, IntArray
 from ..errors import PatternError
+from .near_lines import Geometries, lines_near
 from .places import line_strings
 from .segments import Curve
 
@@ -28,10 +28,6 @@ MAX_NEAR = 2_000_000
 MAX_MEETING = 200_000
 #: Lines that are compared with all others at once: bounds the memory, not the result.
 _CHUNK = 64
-
-
-#: Shapely's geometries (N,).
-Geometries = NDArray[np.object_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,10 +247,14 @@ def near_pairs(tree: shapely.STRtree, lines: Geometries, distance: float) -> tup
         pairs[0] += start
         count += pairs.shape[1]
         if count > MAX_NEAR:
-            raise PatternError("too many lines lie in the same place")
+            raise too_near()
         found.append(pairs)
     first, second = np.concatenate(found, axis=1)
     return first, second
+
+
+def too_near() -> PatternError:
+    return PatternError("too many lines lie in the same place")
 
 
 def _ring_points(
@@ -294,11 +294,9 @@ def curve_lines(curves: Sequence[Curve]) -> Geometries:
 
 def lines_at(lines: Geometries, points: FloatArray, tolerance: float) -> IntArray:
     """(N,) how many of the lines pass within ``tolerance`` of each point (N,2)."""
-    tree, places = shapely.STRtree(lines), shapely.points(points)
-    counts = np.zeros(len(places), dtype=np.int64)
-    for start in range(0, len(places), _CHUNK):
-        near = tree.query(places[start : start + _CHUNK], predicate="dwithin", distance=tolerance)[0]
-        counts[start : start + _CHUNK] = np.bincount(near, minlength=len(places[start : start + _CHUNK]))
+    counts = np.zeros(len(points), dtype=np.int64)
+    for point, _ in lines_near(lines, points, tolerance):
+        counts += np.bincount(point, minlength=len(points))
     return counts
 
 

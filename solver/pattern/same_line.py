@@ -9,7 +9,8 @@ import numpy as np
 import shapely
 
 from ..arrays import FloatArray, IntArray
-from .rings import Geometries, curve_lines, near_pairs
+from .near_lines import Geometries, lines_near
+from .rings import MAX_NEAR, curve_lines, too_near
 from .stroke import Decision, Role, Stroke
 
 #: Lines of these roles may be the same crease.
@@ -45,9 +46,7 @@ def settle_same_lines(strokes: Sequence[Stroke], tolerance: float) -> tuple[list
     changed: dict[int, Stroke] = {}
     conflicts: list[str] = []
     lines = curve_lines([strokes[k].curve for k in creases])
-    middles = shapely.line_interpolate_point(lines, 0.5, normalized=True)
-    first, second = near_pairs(shapely.STRtree(lines), middles, _NEAR * tolerance) if len(lines) else ((), ())
-    for a, b in _alike(lines, np.array(first, dtype=np.int64), np.array(second, dtype=np.int64), tolerance):
+    for a, b in _alike(lines, *_passing_middles(lines, _NEAR * tolerance), tolerance):
         if a in dropped or b in dropped or not _same(lines[a], lines[b], tolerance):
             continue
         one, other = creases[b], creases[a]
@@ -76,6 +75,21 @@ def _twice(copies: int) -> list[str]:
     if copies == 1:
         return ["1 line was drawn twice and counts once"]
     return [f"{copies:,} lines were drawn twice and count once"]
+
+
+def _passing_middles(lines: Geometries, distance: float) -> tuple[IntArray, IntArray]:
+    """Index pairs of lines: one, and another that passes by its middle. Raises PatternError: too many."""
+    middles = shapely.get_coordinates(shapely.line_interpolate_point(lines, 0.5, normalized=True))
+    found: list[tuple[IntArray, IntArray]] = []
+    count = 0
+    for pairs in lines_near(lines, middles, distance):
+        count += len(pairs[0])
+        if count > MAX_NEAR:
+            raise too_near()
+        found.append(pairs)
+    first = [np.zeros(0, dtype=np.int64), *(one for one, _ in found)]
+    second = [np.zeros(0, dtype=np.int64), *(other for _, other in found)]
+    return np.concatenate(first), np.concatenate(second)
 
 
 def _alike(lines: Geometries, first: IntArray, second: IntArray, tolerance: float) -> Iterator[tuple[int, int]]:

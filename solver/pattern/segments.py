@@ -27,6 +27,8 @@ _SAMPLES_OF_SIZE = 320
 LEAST_SAMPLES = 5
 #: Samples of a straight one: its ends.
 _STRAIGHT_SAMPLES = 2
+#: Larger numbers cannot be squared and subtracted without losing the drawing.
+MAX_COORDINATE = 1e12
 #: Points of a whole drawing. A drawing that needs more is not a crease pattern a net could carry.
 MAX_POINTS = 200_000
 #: Samples of a segment that needs more than a whole drawing may have, without the one that it shares.

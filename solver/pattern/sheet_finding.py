@@ -10,7 +10,8 @@ import shapely
 
 from ..arrays import FloatArray
 from ..errors import PatternError
-from .rings import JOIN, Gap, Geometries, Ring, curve_lines, loose_ends, outer_rings, touching_groups
+from .near_lines import Geometries
+from .rings import JOIN, Gap, Ring, curve_lines, loose_ends, outer_rings, touching_groups
 from .segments import Curve
 from .stroke import CREASE_ROLES, EDGE_ROLES, Role, Stroke
 

@@ -12,11 +12,9 @@ import shapely
 
 from ..arrays import FloatArray
 from ..errors import PatternError
-from .joining import join_strokes
+from .drawn_lines import joined_lines
 from .meaning import Evidence, classify_all
-from .same_line import without_copies
 from .segments import MAX_POINTS, Curve, bounds, sample_all
-from .sheets import MAX_STROKES
 from .stroke import Decision, Lines, Role, Stroke
 from .svg_walk import Drawing, Drawn
 from .unstroked import why_no_line
@@ -41,12 +39,8 @@ def lines_of(drawing: Drawing) -> Lines:
         if strokes[k].decision.role is Role.DARK:
             decision = Decision(Role.HOLE, "left out of a filled shape", strokes[k].decision.detail)
             strokes[k] = replace(strokes[k], decision=decision)
-    if len(strokes) > MAX_STROKES:
-        raise PatternError(f"the drawing has more than {MAX_STROKES:,} strokes", notes=drawing.notes)
-    filled = _filled(drawing.shapes, size)
-    single, twice = without_copies(strokes)
-    joined, notes = join_strokes(single, size)
-    return Lines(tuple(joined), filled, drawing.page, drawing.unit_mm, (*twice, *notes, *drawing.notes))
+    lines = joined_lines(strokes, size, drawing.unit_mm, drawing.notes)
+    return replace(lines, filled=_filled(drawing.shapes, size), page=drawing.page)
 
 
 def _filled(shapes: Sequence[Drawn], size: float) -> tuple[tuple[FloatArray, ...], ...]:

@@ -12,7 +12,8 @@ import numpy as np
 from ..arrays import FloatArray
 from ..errors import PatternError, ReadError
 from .meaning import MAX_WORDS
-from .segments import MAX_POINTS, Subpath
+from .safe_xml import MAX_DEPTH
+from .segments import MAX_COORDINATE, MAX_POINTS, Subpath
 from .svg_bounds import exact_box
 from .svg_css import MAX_PROPERTY, MEASURES, Stylesheet, css_path
 from .svg_shapes import SHAPES, shape_subpaths
@@ -27,12 +28,10 @@ from .svg_transforms import (
     parse_transform,
 )
 from .svg_values import MM_PER_PIXEL, UNKNOWN_COLOUR, Colour, Length, SvgValueError, parse_length, parse_numbers
-from .svg_xml import MAX_DEPTH, Node
+from .svg_xml import Node
 
 #: Elements drawn, those repeated by <use> counted each time.
 MAX_ELEMENTS = 50_000
-#: Larger numbers cannot be squared and subtracted without losing the drawing.
-MAX_COORDINATE = 1e12
 #: What a browser assumes of an image without any size (CSS 2.1, section 10.3.2).
 _DEFAULT_VIEWPORT = (300.0, 150.0)
 

@@ -1,18 +1,12 @@
-"""Reading XML safely: bounded, few and small entities, nothing from outside of the file.
-
-A tree of our own is built straight from expat: the standard tree builders expand entities and cannot be told
-to stop at a depth or a count.
-"""
+"""The tree of an SVG file, read safely: what is needed of each element, and nothing of other namespaces."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from xml.parsers import expat
 
 from ..errors import ReadError
-from .text import decode_xml
-from .xml_entities import Entities
+from .safe_xml import parse_xml
 
 SVG_NAMESPACE = "http://www.w3.org/2000/svg"
 XLINK_NAMESPACE = "http://www.w3.org/1999/xlink"
@@ -20,8 +14,6 @@ INKSCAPE_NAMESPACE = "http://www.inkscape.org/namespaces/inkscape"
 
 #: All XML elements of a file, drawn or not (metadata, gradients, text).
 MAX_XML_ELEMENTS = 200_000
-#: Nesting of XML elements; real drawings stay below 30, and each level is a Python call while drawing.
-MAX_DEPTH = 100
 #: Class names of one element.
 MAX_CLASSES = 50
 
@@ -64,30 +56,8 @@ class Node:
 
 def parse_svg_tree(data: bytes | str) -> Node:
     """The root <svg> node. Raises ReadError: empty, not XML, not SVG, too deep or too much of anything."""
-    if not data.strip():
-        raise ReadError("the file is empty")
-    # As text: expat itself knows four encodings, and then takes the declaration for done.
-    data = decode_xml(data)
-    builder = _Builder(data)
-    parser = expat.ParserCreate(namespace_separator="}")
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
-    parser.CharacterDataHandler = builder.characters
-    parser.EntityDeclHandler = builder.entity
-    parser.EndDoctypeDeclHandler = builder.end_doctype
-    parser.ExternalEntityRefHandler = builder.external
-    parser.SkippedEntityHandler = builder.skipped
-    parser.buffer_text = True
-    # Attributes that a DTD gives to all elements of a kind: a long one would be copied to each of them.
-    parser.specified_attributes = True
-    try:
-        parser.Parse(data, True)
-    except expat.ExpatError as error:
-        raise ReadError(
-            f"this is not well-formed XML ({expat.ErrorString(error.code)} in line {error.lineno})"
-        ) from error
-    except (ValueError, LookupError, UnicodeError) as error:
-        raise ReadError(f"this is not well-formed XML ({error})") from error
+    builder = _Builder()
+    parse_xml(data, builder, MAX_XML_ELEMENTS)
     root = builder.root
     if root is None:
         raise ReadError("this is not well-formed XML (no element in it)")
@@ -97,23 +67,15 @@ def parse_svg_tree(data: bytes | str) -> Node:
 
 
 class _Builder:
-    """Expat's events -> nodes."""
+    """What is in the file -> nodes."""
 
-    def __init__(self, text: str) -> None:
-        self._text = text
-        self._entities = Entities()
+    def __init__(self) -> None:
         self.root: Node | None = None
         self.root_name = ""
         self._open: list[Node] = []
-        self._elements = 0
         self._numbers: dict[str, int] = {}
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
-        self._elements += 1
-        if self._elements > MAX_XML_ELEMENTS:
-            raise ReadError(f"the drawing has more than {MAX_XML_ELEMENTS:,} elements")
-        if len(self._open) >= MAX_DEPTH:
-            raise ReadError(f"the drawing's elements are nested more than {MAX_DEPTH} deep")
         namespace, _, local = name.rpartition("}")
         # A file without any namespace is read too: several small exporters forget it.
         tag = local if namespace in ("", SVG_NAMESPACE) else ""
@@ -132,22 +94,6 @@ class _Builder:
     def characters(self, text: str) -> None:
         if self._open and self._open[-1].tag == "style":
             self._open[-1].text += text
-
-    def entity(self, name: str, parameter: int, value: str | None, *_rest: object) -> None:
-        # Those of other files have no value here, and parameter entities are never put anywhere.
-        if value is not None and not parameter:
-            self._entities.declare(name, value)
-
-    def end_doctype(self) -> None:
-        if self._entities:
-            self._entities.check(self._text)
-
-    def external(self, _context: str | None, _base: str | None, system: str | None, public: str | None) -> int:
-        raise ReadError(f"it refers to another file ({(system or public or '')[:80]!r}) by an XML entity, not read")
-
-    def skipped(self, name: str, parameter: int) -> None:
-        if not parameter:
-            raise ReadError(f"it refers to the XML entity {name[:40]!r}, which is not declared in it")
 
 
 def _attributes(attributes: dict[str, str]) -> dict[str, str]:

@@ -98,6 +98,19 @@ def decode_xml(data: bytes | str) -> str:
     return _decoded(data, info.name, f"it declares {name}")
 
 
+def decode_plain(data: bytes | str) -> str:
+    """The text of a file of numbers and words by its byte order mark, else as UTF-8.
+
+    What is no text becomes a question mark in a box, so that its line can be told.
+    """
+    if isinstance(data, str):
+        return data.removeprefix("\ufeff")
+    for mark, encoding in _BYTE_ORDER_MARKS:
+        if data.startswith(mark):
+            return data[len(mark) :].decode(encoding, "replace")
+    return data.decode("utf-8", "replace")
+
+
 def _decoded(data: bytes, encoding: str, why: str) -> str:
     try:
         text = data.decode(encoding)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import io
 import itertools
 import math
@@ -11,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from ..errors import CurvefoldError
+from ..dxf_library import dxf_library
 from .pen import SIGN, Page, rgb
 from .pieces import Arc, Cubic, Line, Piece
 from .profile import Layer
@@ -34,11 +33,7 @@ class DxfPen:
     """One page. Raises CurvefoldError where the library that writes DXF is missing."""
 
     def __init__(self, title: str) -> None:
-        try:
-            ezdxf: Any = importlib.import_module("ezdxf")
-        except ImportError:
-            raise CurvefoldError("DXF needs the Python package ezdxf, which is not installed") from None
-        self._ezdxf = ezdxf
+        self._ezdxf = ezdxf = dxf_library()
         with _without_times(ezdxf.options):
             self._document: Any = ezdxf.new(_VERSION)
         header = self._document.header

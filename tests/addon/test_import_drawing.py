@@ -98,11 +98,13 @@ def test_a_folded_form_is_one_sentence(fold_file):
 
 
 def test_all_kinds_of_files_are_offered(extension):
-    suffixes = extension("solver").DRAWING_SUFFIXES
+    suffixes, formats = extension("solver").DRAWING_SUFFIXES, extension("solver").DRAWING_FORMATS
     assert {".svg", ".fold"} <= set(suffixes)
     for name in ("import_drawing", "fold_drawing"):
         properties = getattr(bpy.ops.curvefold, name).get_rna_type().properties
         assert properties["filter_glob"].default.split(";") == [f"*{suffix}" for suffix in suffixes]
+        description = getattr(bpy.ops.curvefold, name).get_rna_type().description
+        assert all(one in description for one in formats)
     assert bpy.types.CURVEFOLD_FH_drawing.bl_file_extensions.split(";") == list(suffixes)
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from dxf_files import border, entity, r12
+
 from tests.gui.person import of_role
 from tests.gui.program import ROOT, Installation, Program
 
@@ -26,3 +28,18 @@ def test_a_dropped_drawing_is_a_sheet_with_creases(
     creases = of_role(facts, "CREASE")
     assert creases
     assert all(crease["parent"] == sheet for crease in creases.values())
+
+
+def test_a_dropped_drawing_of_another_format(
+    blender: Program, installation: Installation, shot: Callable[[str], Path]
+) -> None:
+    crease = entity("ARC", (10, 50), (20, -20), (40, 80), (50, 45), (51, 135), layer="valley")
+    (installation.work / "arc.dxf").write_bytes(r12(border(), crease, header=[(9, "$INSUNITS"), (70, 4)]))
+    blender.rest()
+    blender.screen.key("a", "Delete")
+    left, top, right, bottom = blender.ask("regions")["WINDOW"]
+    blender.screen.drop(((left + right) / 2, (top + bottom) / 2), f"{installation.inside}/arc.dxf")
+    facts = blender.until(lambda facts: "arc" in of_role(facts, "SHEET"), "there is a sheet", 20.0)
+    shot("drop-dxf")
+    (crease_found,) = of_role(facts, "CREASE").values()
+    assert crease_found["parent"] == "arc"

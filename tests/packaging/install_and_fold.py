@@ -10,11 +10,11 @@ import bpy  # isort: skip
 import addon_utils
 
 PACKAGE = "bl_ext.user_default.curvefold"
-LIBRARIES = ("scipy", "shapely", "svgelements")
+LIBRARIES = ("scipy", "shapely", "svgelements", "ezdxf")
 
 
 def main() -> int:
-    archive, drawing, out = (Path(argument) for argument in sys.argv[1:])
+    archive, drawing, from_cad, out = (Path(argument) for argument in sys.argv[1:])
     out.mkdir()
     bpy.ops.extensions.package_install_files(filepath=str(archive), repo="user_default", enable_on_install=True)
     assert PACKAGE in bpy.context.preferences.addons
@@ -24,6 +24,9 @@ def main() -> int:
         "fold": cli.main(
             ["fold", str(drawing), "--out", str(out / "fold"), "--render", str(out / "picture.png"), *quick]
         ),
+        # Its library is imported when it is read, and not before.
+        "libraries before": sorted({"ezdxf"} & sys.modules.keys()),
+        "from CAD": cli.main(["fold", str(from_cad), "--out", str(out / "from CAD"), "--resolution", "12"]),
         # In processes of its own, which have to find the installed extension again.
         "batch": cli.main(["batch", str(drawing), "--out", str(out / "batch"), "--resolution", "12"]),
         "libraries": {name: importlib.import_module(name).__file__ for name in LIBRARIES},

@@ -10,10 +10,11 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from dxf_files import border, entity, r12
 
 ROOT = Path(__file__).absolute().parents[2]
 SCRIPT = Path(__file__).with_name("install_and_fold.py")
-BUNDLED = ("scipy", "shapely", "svgelements")
+BUNDLED = ("scipy", "shapely", "svgelements", "ezdxf")
 
 #: Python's name of the machine, and Blender's.
 PLATFORMS = {
@@ -76,11 +77,14 @@ def test_every_platform_was_built(built: Path) -> None:
 def test_install_enable_fold_and_remove(built: Path, tmp_path: Path) -> None:
     drawing = tmp_path / "arc.svg"
     drawing.write_text(DRAWING)
+    from_cad = tmp_path / "arc.dxf"
+    crease = entity("ARC", (10, 50), (20, -20), (40, 80), (50, 45), (51, 135), (62, 1))
+    from_cad.write_bytes(r12(border(), crease))
     user, out = tmp_path / "user", tmp_path / "out"
     user.mkdir()
     environment = {**os.environ, "BLENDER_USER_RESOURCES": str(user)}
     ran = subprocess.run(
-        [sys.executable, str(SCRIPT), str(built), str(drawing), str(out)],
+        [sys.executable, str(SCRIPT), str(built), str(drawing), str(from_cad), str(out)],
         cwd=tmp_path,
         env=environment,
         capture_output=True,
@@ -101,6 +105,8 @@ def test_install_enable_fold_and_remove(built: Path, tmp_path: Path) -> None:
     for name in BUNDLED:
         assert Path(found["libraries"][name]).is_relative_to(user)
     assert found["fold"] == 0
+    assert found["libraries before"] == []
+    assert found["from CAD"] == 0
     assert found["batch"] == 0
     assert (out / "fold" / "report.json").is_file()
     assert (out / "picture.png").is_file()

@@ -20,6 +20,8 @@ READ = """
 import re, sys
 import solver
 from solver.description import read_handles
+from solver.dxf_library import dxf_library
+dxf_library()
 def peak():  # of this program alone: what getrusage says begins at that of the process that started it
     return int(re.search("VmHWM:\\s*(\\d+) kB", open("/proc/self/status").read())[1])
 before = peak()

@@ -73,6 +73,9 @@ MEANT = {
     "no_unit.svg": Meant(283.46**2, "U", (("no physical size", "1 mm"),)),
     "hairline.svg": Meant(1e4, "U", (("2 strokes of width 0", "hairlines"),), unit_mm=1.0),
     "blank.svg": Meant(1e4, "", (("no crease", "blank paper"),)),
+    # two of the sample drawings as Inkscape exports them: with splines, and with lines for curves
+    "inkscape_r14.dxf": Meant(180 * 120, "U", (("no physical size", "1 mm"),)),
+    "inkscape_r12.dxf": Meant(25_132.7, "UUUU", (("192 strokes", "continue each other", "6 lines"),)),
 }
 #: Files of several sheets, each like the first.
 SHEETS = {"three_sheets.svg": (3, Meant(1200, "U")), "two_sheets.fold": (2, Meant(1.0, "V", unit_mm=100.0))}

@@ -8,7 +8,8 @@ import pytest
 
 from solver.pattern.meaning import MAX_WORDS
 from solver.pattern.read_options import ReadOptions
-from solver.pattern.svg import NO_SIZE, read_svg
+from solver.pattern.sizes import NO_SIZE
+from solver.pattern.svg import read_svg
 from solver.pattern.svg_values import UNKNOWN_COLOUR
 from solver.pattern.svg_walk import Drawing, read_drawing
 from solver.pattern.svg_xml import parse_svg_tree
