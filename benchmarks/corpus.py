@@ -46,7 +46,7 @@ def do_all(jobs: Sequence[Job], processes: int) -> Iterator[Run]:
 # --- what is printed ------------------------------------------------------------------------------------
 
 _HEADER = ("family", "runs", "feasible", "reached+folded", "whole", "folded %", "angle 10/50/90", "mean stretch",
-           "gap max", "DOG angle", "iterations", "seconds", "MB")  # fmt: skip
+           "largest edge", "ripples sr", "gap max", "DOG angle", "iterations", "seconds", "MB")  # fmt: skip
 
 
 def table(runs: Sequence[Run]) -> list[str]:
@@ -72,7 +72,8 @@ def _row(name: str, runs: Sequence[Run]) -> tuple[str, ...]:
     return (
         name, str(len(runs)), str(len(there)), f"{good} ({good / len(there):.1%})", str(sum(r.ok for r in there)),
         f"{np.mean([r.folded for r in there]):.2%}", " / ".join(f"{angle:.0f}°" for angle in angles),
-        f"{middle('stretch_mean'):.1e}", f"{middle('continuity'):.1e}", f"{middle('dog_angle'):.0e}",
+        f"{middle('stretch_mean'):.1e}", f"{max(r.stretch_max for r in there):.1%}", f"{middle('ripples'):.2f}",
+        f"{middle('continuity'):.1e}", f"{middle('dog_angle'):.0e}",
         f"{middle('iterations'):.0f}", f"{middle('seconds'):.1f}", f"{max(r.memory_mb for r in there):.0f}",
     )  # fmt: skip
 

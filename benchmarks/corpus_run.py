@@ -55,6 +55,7 @@ class Run:
     fold_angle: list[float] = field(default_factory=lambda: [0.0, 0.0, 0.0])
     stretch_mean: float = 0.0
     stretch_max: float = 0.0
+    ripples: float = 0.0  # solver.gauss_area, steradians
     continuity: float = 0.0
     dog_angle: float = 0.0
     handle_error: float = 0.0
@@ -149,6 +150,7 @@ def _look(run: Run, net: solver.PiecewiseDog, rest: Rest) -> None:
     run.folded = m.folded_part
     run.fold_angle = [round(angle, 3) for angle in fold_angle_quantiles(m)]
     run.stretch_mean, run.stretch_max = float(m.stretch.mean()), float(m.stretch.max())
+    run.ripples = solver.gauss_area(net, rest.positions)
     run.continuity = float(m.continuity.max(initial=0.0))
     run.dog_angle = float(m.dog_angle.max(initial=0.0))
     run.handle_error = float(report.handle_error / net.frame.unit)

@@ -21,6 +21,8 @@ from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 
+import numpy as np
+
 from benchmarks.drawings_run import WAYS, Fold, FoldJob, Reading, StrangerRun, fold, read, read_stranger, read_warm
 from benchmarks.large_drawings import LARGE
 from benchmarks.processes import each_alone
@@ -36,7 +38,9 @@ LARGE_BARS = {2_000: 1.0, 20_000: 10.0}
 #: Bytes of memory that a byte of a drawing may take.
 MEMORY_BAR = 80
 _HEADER = ("drawing", "creases", "letters", "read s", "notes", "way", "outcome", "angle 10/50/90",
-           "stretch mean/max", "cells", "iterations", "seconds")  # fmt: skip
+           "stretch mean/max", "ripples sr", "cells", "iterations", "seconds")  # fmt: skip
+#: A sheet with a median below this is hardly folded, degrees.
+SHALLOW = 5.0
 #: Letters of a reason that the summary groups by.
 _REASON = 90
 
@@ -119,12 +123,13 @@ def rows(readings: Sequence[Reading], folds: dict[FoldJob, Fold]) -> list[str]:
 
 def _folded(one: Fold) -> tuple[str, ...]:
     if not one.fold_angle:
-        return (one.job.way, one.status, one.sentence, "", "", "", f"{one.seconds:.1f}")
+        return (one.job.way, one.status, one.sentence, "", "", "", "", f"{one.seconds:.1f}")
     return (
         one.job.way,
         one.status,
         " / ".join(f"{angle:.0f}°" for angle in one.fold_angle),
         f"{one.stretch_mean:.1e} / {one.stretch_max:.1e}",
+        f"{one.ripples:.2f}",
         str(one.resolution),
         str(one.iterations),
         f"{one.seconds:.1f}",
@@ -149,6 +154,14 @@ def summary(readings: Sequence[Reading], folds: dict[FoldJob, Fold]) -> list[str
         mine = [one for job, one in folds.items() if job.way == way]
         told = ", ".join(f"{n} {status}" for status, n in Counter(one.status for one in mine).most_common())
         lines.append(f"folded by {way}: {sum(one.ok for one in mine)} of {len(mine)} sheets ({told})")
+        angles = np.array([one.fold_angle for one in mine if one.fold_angle])
+        if len(angles):
+            tenth, middle = np.median(angles[:, 0]), np.median(angles[:, 1])
+            lines.append(
+                f"    median sheet: {middle:.0f}° in the median, {tenth:.0f}° at the lowest tenth; "
+                f"{np.mean(angles[:, 1] < SHALLOW):.0%} of the sheets below {SHALLOW:.0f}°; "
+                f"largest edge {max(one.stretch_max for one in mine):.1%}"
+            )
     crashes = [(one.sentence, Path(one.path).name) for one in readings if one.status in ("crash", "hang")]
     crashes += [
         (one.sentence, Path(job.path).name) for job, one in folds.items() if one.status in ("crash", "hang")

@@ -69,6 +69,7 @@ class Fold:
     """What came of folding a sheet. status: an outcome's name, "refused", "crash" or "hang"; angles in degrees.
 
     ok: folded as asked; fold_angle: 10 %, median and 90 %; stretch: relative
+    ripples: what the Gauss image covers, steradians (``solver.gauss_area``): smooth paper has none
     resolution: quads along the longer side
     """
 
@@ -80,6 +81,7 @@ class Fold:
     fold_angle: tuple[float, ...] = ()
     stretch_mean: float = 0.0
     stretch_max: float = 0.0
+    ripples: float = 0.0
     iterations: int = 0
     seconds: float = 0.0
     resolution: int | None = None
@@ -149,6 +151,7 @@ def _by_angle(job: FoldJob, pattern: solver.CreasePattern) -> Fold:
         tuple(round(angle, 3) for angle in fold_angle_quantiles(m)),
         float(m.stretch.mean()),
         float(m.stretch.max()),
+        solver.gauss_area(result.net, result.positions),
         result.iterations,
         resolution=result.net.resolution,
         notes=tuple(result.net.notes),
@@ -161,7 +164,7 @@ def _by_corners(job: FoldJob, pattern: solver.CreasePattern) -> Fold:
     drag_net(run, net, protocol_drag(pattern))
     return Fold(
         job, run.status, run.ok, run.sentence, run.folded, tuple(run.fold_angle), run.stretch_mean,
-        run.stretch_max, run.iterations, resolution=net.resolution, notes=tuple(net.notes),
+        run.stretch_max, run.ripples, run.iterations, resolution=net.resolution, notes=tuple(net.notes),
     )  # fmt: skip
 
 
