@@ -416,10 +416,18 @@ class FoldModel:
         return True
 
     def _release(self, problem: Problem) -> None:
-        """Let the drive know which points something else turns."""
-        masks = [mask for pull in self._pulls() if (mask := pull.released()) is not None]
-        for pull in (self._drive, self._least) if masks else ():
-            if pull.release(np.logical_or.reduce(masks)):
+        """Let the drive and the least fold know which points something else turns."""
+        pulls = self._pulls()
+        masks = [mask for pull in pulls if (mask := pull.released()) is not None]
+        if not masks:
+            return
+        turned = np.logical_or.reduce(masks)
+        # A crease that is told its side is pulled off flat by that.
+        told = np.isin(self._least.creases, [crease for pull in pulls for crease in pull.sides()])
+        for changed, pull in (
+            (self._drive.release(turned), self._drive), (self._least.release(turned | told), self._least)
+        ):  # fmt: skip
+            if changed:
                 self._replace(problem, pull)
 
     def _watch(self, problem: Problem, step: StepReport, moving: bool) -> None:

@@ -42,6 +42,7 @@ class LeastFold(Pull):
         self._net, self._weight = net, weight * HALF_ANGLE
         self._points = signed_points(net)
         self._chain = net.crease_points.chain[self._points]
+        self.creases = net.crease_points.crease[self._points]  # (n,) of the points, from 0
         self._term = signed_fold(net, self._points, np.zeros(len(self._points)), 0, 0.0, "least fold")
         self._size = float(np.ptp(net.flat, axis=0).max())
         self._released = np.zeros(len(self._points), dtype=bool)
