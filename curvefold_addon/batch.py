@@ -258,12 +258,12 @@ class _Crew:
             for partial in task.folder.glob(PARTIAL_FILES):
                 partial.unlink(missing_ok=True)
         seconds = time.monotonic() - start
-        if self._stopped and code not in FOLDED_CODES:
+        if code in FOLDED_CODES and not all((task.folder / name).is_file() for name in task.results):
+            code = CRASHED  # Python itself ends with 1 on an error that nobody expected
+        if code not in FOLDED_CODES and (self._stopped or _was_interrupted(log)):
             # At most its log tells how Python was interrupted while it started.
             log.unlink()
             return Outcome(task, code, "interrupted", seconds)
-        if code in FOLDED_CODES and not all((task.folder / name).is_file() for name in task.results):
-            code = CRASHED  # Python itself ends with 1 on an error that nobody expected
         if code not in FOLDED_CODES:
             return Outcome(task, code, _last_words(log, code), seconds)
         sentence = _sentence(task.folder / REPORT)
@@ -355,6 +355,11 @@ def _sha256(path: Path) -> str:
 def _sentence(report: Path) -> str:
     value = json.loads(report.read_text(encoding="utf-8")).get("sentence", "")
     return str(value)
+
+
+def _was_interrupted(log: Path) -> bool:
+    """Whether Ctrl-C met a process while its Python started. All at the console hear it, this one perhaps last."""
+    return log.read_bytes().rstrip().endswith(b"KeyboardInterrupt")
 
 
 def _last_words(log: Path, code: int) -> str:
