@@ -39,6 +39,8 @@ _MOST_SHIFT = 30.0
 _GAIN, _HARDER, _HARDEST = 0.2, 3.0, 30.0
 #: Easing multiplies the pull by a power of budget / stretch, but by no less and no more than this.
 _EASE_POWER, _EASE_LEAST, _EASE_MOST = 1.5, 0.25, 0.9
+#: A drive that has eased aims higher again only below this part of the budget.
+_ROOM = 0.8
 #: The pull is eased at most so often.
 _EASINGS = 6
 
@@ -100,7 +102,7 @@ class AngleDrive(Pull):
         if abs(short) <= _AIMED:
             self._short = np.inf
             return False
-        if short > 0 and self._eased:
+        if short > 0 and self._eased and mean_stretch(self._net, x) > _ROOM * MEAN_BUDGET:
             return False
         self._aims += 1
         shift = float(np.clip(self._shift + short, -_MOST_SHIFT, _MOST_SHIFT))
